@@ -23,7 +23,7 @@ concept Transfer24 = requires(T& port, std::uint32_t word, std::uint32_t& reply)
 enum class ConverterState : std::uint8_t {
   sound,
   silent,            ///< the serial port failed
-  registers_differ,  ///< absent, unpowered, or another range, code or setting than was written: brown-out
+  registers_differ,  ///< absent, unpowered, or with another range, code or setting than written: brown-out
   too_hot,           ///< has shut its outputs down
   overloaded,        ///< an output exceeds the current limit: short circuit
 };
@@ -122,7 +122,7 @@ class Ad5752 {
     return port_.send24(word);
   }
 
-  /// The word asks, the next one brings the answer: one that does nothing.
+  /// This word requests the register. The next one, which has no effect, transfers the answer.
   ConverterState compare(const Reading& reading) {
     std::uint32_t reply = 0;
     port_.pause_ns(kHighReading_ns);

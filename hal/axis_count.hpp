@@ -5,7 +5,7 @@
 
 namespace hal {
 
-/// Of the axis board and its substitutes: PIL stations, the simulated machine. Another board states its number as
+/// Number of axes of the axis board and its substitutes: PIL stations, the simulated machine. Other boards define
 /// Board::kAxes.
 inline constexpr std::size_t kAxisCount = 2;
 

@@ -21,8 +21,8 @@ concept AxisHal = requires(T& axis) {
   requires DriveEnable<std::remove_reference_t<decltype(axis.drive_enable())>>;
 };
 
-/// An axis that may have a second encoder, on the table. Contract: as of Encoder; the reading is invalid while none is
-/// wired. Nothing of the control law reads it.
+/// An axis that may have a second encoder, on the table. Contract: as for Encoder; the reading is invalid while none is
+/// wired. The control law does not read it.
 template <typename T>
 concept TableEncoderHal = requires(T& axis) {
   requires Encoder<std::remove_reference_t<decltype(axis.table_encoder())>>;

@@ -11,7 +11,7 @@ concept EmergencyStop = requires(T& stop) {
   { stop.is_pressed() } -> std::same_as<bool>;
 };
 
-/// A relay in the amplifiers' power. Contract: `close(false)` takes the power away; open after reset. Never waits.
+/// A relay in the amplifiers' power. Contract: `close(false)` cuts the power; open after reset. Never waits.
 template <typename T>
 concept PowerRelay = requires(T& relay, bool closed) {
   { relay.close(closed) } -> std::same_as<void>;

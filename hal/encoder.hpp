@@ -16,8 +16,8 @@ struct EncoderReading {
 /// The counter at an index pulse.
 struct IndexReading {
   std::uint32_t counts = 0;
-  bool seen = false;    ///< a pulse came since the last call
-  bool missed = false;  ///< more than one came; `counts` is of the last
+  bool seen = false;    ///< a pulse occurred since the last call
+  bool missed = false;  ///< more than one occurred; `counts` belongs to the last
 };
 
 /// Contract: `read()` latches the counter once and returns at once. Positive counts are positive travel of the axis.

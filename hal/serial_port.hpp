@@ -15,7 +15,7 @@ concept SerialLine = requires(T& line, std::byte out, std::byte& in) {
   { line.receive(in) } -> std::same_as<bool>;
 };
 
-/// Contract of the program's side: as SerialLine, but `send` always accepts the byte.
+/// Contract of the program's side: like SerialLine, but `send` always accepts the byte.
 template <typename T>
 concept SerialPort = requires(T& port, std::byte out, std::byte& in) {
   { port.send(out) } -> std::same_as<void>;

@@ -8,8 +8,8 @@
 
 namespace hal {
 
-/// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` passes on what the line
-/// takes: call it at least once per character time. One caller for both.
+/// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` passes on the bytes that
+/// the line accepts: call it at least once per character time. One caller for both.
 template <SerialLine Line, std::size_t size>
 class SerialQueue {
  public:

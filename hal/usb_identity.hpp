@@ -1,4 +1,4 @@
-// How the board names itself on USB: what its descriptors say and what a computer looks for.
+// The board's identity on USB: in its descriptors, and in a computer's search.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ inline constexpr std::uint16_t kUsbProduct = 0xA715;
 inline constexpr const char* kUsbManufacturerName = "axis";
 inline constexpr const char* kUsbProductName = "Axis board";
 
-/// Interface 0, the only one. Where a computer is not told usage page and usage (libusb), this number must do.
+/// Interface 0, the only one. If usage page and usage are not available (libusb), this number identifies it.
 inline constexpr std::uint8_t kUsbInterface = 0;
 inline constexpr std::uint16_t kHidUsagePage = 0xFF00;  ///< vendor-defined: HID Usage Tables, section 3
 inline constexpr std::uint16_t kHidUsage = 0x0001;

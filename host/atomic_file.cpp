@@ -38,7 +38,8 @@ void write_all(int file, std::string_view text, const std::string& path) {
 
 constexpr std::string_view kMark = ".axistool-", kEnding = ".partial";
 
-/// What a program that was killed left in the folder. A file that is being written is locked, and its writer lives.
+/// Removes partial files of killed programs from the folder. A file that is still being written is locked by its
+/// writer.
 void remove_abandoned(const std::filesystem::path& folder) {
   std::error_code fault;
   for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, fault)) {
@@ -53,8 +54,8 @@ void remove_abandoned(const std::filesystem::path& folder) {
   }
 }
 
-/// A new file in the folder of `destination`, with its rights where it is there. Removed when writing ends by an
-/// exception. Messages name the output as the user did.
+/// A new file in the folder of `destination`, with the rights of `destination` if that exists. Removed if writing ends
+/// by an exception. Messages name the output as the user did.
 class TemporaryFile {
  public:
   TemporaryFile(std::string destination, std::string name)

@@ -1,4 +1,4 @@
-// What Eigen solves through much code, compiled once: an instance for each size and file takes seconds.
+// Wrappers of Eigen's solvers, compiled once: an instance for each size and file takes seconds to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// Of a square matrix, in the order in which Eigen finds them.
+/// Eigenvalues of a square matrix, in Eigen's order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// Eigenvalues of a symmetric matrix, ascending, and the unit vectors that belong to them, a column each.
@@ -24,14 +24,14 @@ struct RightSingular {
 };
 RightSingular right_singular(const Eigen::MatrixXd& matrix);
 
-/// Coefficients of the columns that come closest to `values`, by QR with column pivoting.
+/// Least-squares coefficients of the columns for `values`, by QR with column pivoting.
 Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values);
 Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& values);
 
-/// The smallest of the coefficients that come closest to `values`, where several do: by complete orthogonal
-/// decomposition. The pseudo-inverse is its solution for unit values.
+/// The least-squares coefficients of smallest norm for `values`, by complete orthogonal decomposition. The
+/// pseudo-inverse is the solution for unit values.
 Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values);
-/// The same for several sets of values of the same columns.
+/// The same for several sets of values with the same columns.
 std::function<Eigen::VectorXd(const Eigen::VectorXd&)> least_norm_solver(const Eigen::MatrixXd& columns);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
@@ -39,7 +39,7 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& values);
 Eigen::MatrixXd symmetric_inverse(const Eigen::MatrixXd& matrix);
-/// The same for the size that is solved once a sample.
+/// The same for a fixed size that is solved for every sample.
 Eigen::Matrix3d symmetric_solution_of_3(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& values);
 
 /// Solution of a square, invertible system, by LU with partial pivoting.
@@ -49,7 +49,7 @@ Eigen::MatrixXd square_inverse(const Eigen::MatrixXd& matrix);
 /// Exponential of a square matrix.
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix);
 
-/// Columns' products with each other, `columns`^T `columns`.
+/// Inner products of the columns, `columns`^T `columns`.
 Eigen::MatrixXd gram(const Eigen::MatrixXd& columns);
 
 }  // namespace host

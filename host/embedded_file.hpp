@@ -1,4 +1,4 @@
-// Files that the program carries within itself, taken in when it is built.
+// Files that are embedded in the program at build time.
 #pragma once
 
 #include <cstddef>

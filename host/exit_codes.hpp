@@ -1,4 +1,4 @@
-// How every command of axistool ends.
+// Exit codes of all commands of axistool.
 #pragma once
 
 #include <stdexcept>
@@ -15,7 +15,7 @@ enum class ExitCode : int {
   protocol = 5,
   device_fault = 6,
   time_out = 7,
-  refused = 8,  ///< for safety, or for want of excitation
+  refused = 8,  ///< for safety, or because of insufficient excitation
   bad_input = 9,
 };
 

@@ -1,5 +1,5 @@
-// What an input may be at most. More is refused with the limit's name before it costs memory or time: a file from
-// elsewhere may be damaged, or made so on purpose. host/README.md lists them.
+// Limits of the size of inputs. Larger input is refused with the limit's name before it costs memory or time, because a
+// foreign file may be damaged, accidentally or on purpose. host/README.md lists the limits.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace host {
 
 struct ByteLimit {
-  std::string_view of;  ///< what is limited, for messages
+  std::string_view of;  ///< the limited input, for messages
   std::size_t bytes;
   bool in_lines;  ///< a text: a line longer than kLongestLine ends the reading at once (/dev/zero never ends)
 };
@@ -22,10 +22,10 @@ inline constexpr ByteLimit kProgramSize{"a G-code program", 64 * kMebibyte, true
 inline constexpr ByteLimit kRecordSize{"a record", 1024 * kMebibyte, true};
 inline constexpr ByteLimit kLogSize{"a log", 1024 * kMebibyte, false};
 
-/// Numbers of a record or log: 400 MB as they are kept; an hour of five channels at 2.7 kHz. Expanded, where packed.
+/// Numbers of a record or log, unpacked: 400 MB in memory; an hour of five channels at 2.7 kHz.
 inline constexpr std::size_t kMostLogNumbers = 50'000'000;
 
-/// Of a model. The largest that the search makes has a tenth of each.
+/// Of a model. The largest model of the search has a tenth of each.
 inline constexpr std::size_t kMostEffects = 64, kMostHarmonics = 128, kMostKnots = 1000;
 
 /// Of a G-code program: some 350 bytes and 0.1 ms of planning a move, 100 bytes a node.

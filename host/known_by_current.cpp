@@ -8,7 +8,7 @@ namespace host {
 
 namespace {
 
-/// The mark of a drive without converter: as many volts as amperes that a record may hold.
+/// Limit that marks a drive without converter: as many volts as a record may hold amperes.
 constexpr double kNoConverter_V = 1e4;
 
 bool is_rotary(const sim::DataSheet& sheet) { return sheet.kind == sim::DriveKind::rotary; }

@@ -29,7 +29,7 @@ std::size_t typing_errors(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known) {
-  constexpr std::size_t kLongestName = 100;  // longer ones are no mistyped names
+  constexpr std::size_t kLongestName = 100;  // longer texts are not mistyped names
   if (name.size() > kLongestName) return {};
   std::string_view nearest;
   std::size_t fewest = kLongestName;

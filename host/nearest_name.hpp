@@ -1,4 +1,4 @@
-// Which known name a mistyped one may have meant.
+// Finds the known name closest to a mistyped one.
 #pragma once
 
 #include <span>
@@ -7,8 +7,7 @@
 
 namespace host {
 
-/// The known name with the fewest typing errors, when they are few enough to be a mistake (a third of the letters);
-/// empty otherwise.
+/// The known name with the fewest typing errors, if these are few enough (a third of the letters); otherwise empty.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
 
 /// "; did you mean X?" or "" — to be put behind a message about an unknown name.

@@ -14,8 +14,8 @@ inline std::string_view trim_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// Parses all of `text`, except surrounding blanks, as a number with a decimal point; empty if it is none or does not
-/// fit a double. "nan" and "inf" are numbers here: callers check std::isfinite.
+/// Parses all of `text`, except surrounding blanks, as a number with a decimal point; empty if it is not a number or
+/// does not fit a double. "nan" and "inf" are numbers here: callers check std::isfinite.
 inline std::optional<double> parse_number(std::string_view text) {
   text = trim_blanks(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

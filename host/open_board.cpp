@@ -17,14 +17,14 @@ namespace host {
 
 namespace {
 
-/// With this drive on every axis; it lives as long as the command.
+/// A simulated board with this drive on every axis, for the duration of the command.
 std::unique_ptr<ReportLink> simulated_board(const std::string& model) {
   const SimulatedDrive drive{read_model(model)};
   return std::make_unique<SimulatedLink>(
       SimulatedDeviceOptions{std::vector<SimulatedDrive>(hal::kAxisCount, drive), "", 1});
 }
 
-/// A board of one axis around a program: "DRIVE.toml:COMMAND".
+/// A simulated board with one axis whose plant is a program: "DRIVE.toml:COMMAND".
 std::unique_ptr<ReportLink> board_around_program(const std::string& words, std::chrono::milliseconds patience) {
   const std::size_t colon = words.find(':');
   if (colon == std::string::npos)

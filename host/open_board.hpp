@@ -9,9 +9,9 @@
 
 namespace host {
 
-/// As open_device() has it, and within this process: "model:FILE", a simulated board with this drive on every axis;
-/// "plant:DRIVE.toml:COMMAND", a board of one axis around a program. `patience`: how long an answer may take. Throws
-/// Failure.
+/// Names as in open_device(), and boards within this process: "model:FILE", a simulated board with this drive on every
+/// axis; "plant:DRIVE.toml:COMMAND", a simulated board with one axis whose plant is a program. `patience`: time-out of
+/// an answer. Throws Failure.
 BoardClient open_board(const std::string& device, std::chrono::duration<double> patience);
 
 /// "x" -> 0, on a board with `axes` axes. Throws Failure(usage).

@@ -1,4 +1,4 @@
-// Checks where an output may be written: before any computation, and again when it is written.
+// Checks whether an output may be written, before any computation and again when it is written.
 #pragma once
 
 #include <string>
@@ -9,12 +9,11 @@ namespace host {
 /// ignored.
 void protect_input(const std::string& path);
 
-/// The file that `path` stands for, links followed, and also where the last one leads to no file yet. Throws Failure:
-/// usage where it is an input or no regular file; bad_input where its folder is missing; permission where folder or
-/// file may not be written.
+/// The target of `path` after following links, even if it does not exist yet. Throws Failure: usage if it is an input
+/// or no regular file; bad_input if its folder is missing; permission if folder or file may not be written.
 std::string output_target(const std::string& path);
 
-/// The same for a folder that will be made where it is missing, with all above it.
+/// The same for a folder, which will be made if it is missing, with its parents.
 void require_output_folder(const std::string& folder);
 
 }  // namespace host

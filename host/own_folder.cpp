@@ -50,7 +50,7 @@ std::string own_folder(const char* variable, const std::string& below_home) {
   if (!S_ISDIR(found.st_mode)) refuse(folder, "no folder", variable);
   if (found.st_uid != ::getuid()) refuse(folder, "it belongs to another user", variable);
   const bool is_shared =
-      (found.st_mode & S_IWGRP) != 0 && found.st_gid != ::getgid();  // one's own group is nobody else
+      (found.st_mode & S_IWGRP) != 0 && found.st_gid != ::getgid();  // the user's own group contains nobody else
   if ((found.st_mode & S_IWOTH) != 0 || is_shared) refuse(folder, "others may write in it", variable);
   return folder;
 }

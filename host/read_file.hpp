@@ -1,4 +1,4 @@
-// Whole files in.
+// Reads whole files.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 namespace host {
 
 /// The bytes of a file. Throws Failure(bad_input) naming the path and the system's reason, or the limit that it
-/// exceeds: then no more than the limit has been read.
+/// exceeds; it then reads no more than the limit.
 std::string read_file(const std::string& path, const ByteLimit& limit);
 
-/// Of a document.
+/// Text of a document.
 std::string read_file(const std::string& path);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// Runs another program and keeps what it prints.
+// Runs another program and returns its output.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ struct CommandResult {
   std::string output;
 };
 
-/// Waits for the end. Output and errors come together; `show` passes them on to standard error as they come.
+/// Waits for the end. Output and errors are returned together; `show` also copies them to standard error as they
+/// arrive.
 CommandResult run_command(const std::vector<std::string>& command, bool show);
 
 }  // namespace host

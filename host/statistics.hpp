@@ -10,7 +10,7 @@ namespace host {
 /// Half of a normal distribution's 95 % interval, in standard deviations.
 inline constexpr double kNormal95 = 1.96;
 
-/// 0 of no values, as the next one.
+/// 0 for no values; the next function likewise.
 inline double largest_magnitude(const std::vector<double>& values) {
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));
@@ -23,14 +23,14 @@ inline double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Of at least one value, the one that `part` (0 to 1) of the others do not exceed.
+/// Quantile: the value that `part` (0 to 1) of the others do not exceed. Needs at least one value.
 inline double quantile(std::vector<double> values, double part) {
   const auto rank = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, rank);
   return *rank;
 }
 
-/// Of at least one value; of an even number, the greater of the two in the middle.
+/// Median; for an even number of values, the larger of the two in the middle. Needs at least one value.
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

@@ -14,7 +14,7 @@ namespace host {
 /// All errors are Failure(bad_input) that name file, line, field and remedy.
 class TomlFields {
  public:
-  /// `where` is how messages call the table, for example "[[move]]". The table must outlive this.
+  /// `where`: name of the table in messages, for example "[[move]]". The table must outlive this.
   TomlFields(const toml::table& table, std::string file, std::string where);
 
   double number(std::string_view key);
@@ -36,7 +36,7 @@ class TomlFields {
   const toml::table* sub_table(std::string_view key);
   bool has(std::string_view key) const { return table_.contains(key); }
 
-  /// Throws if a field was never asked for.
+  /// Throws if the table has a field that was never requested.
   void refuse_rest() const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
   std::size_t line() const;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostDots = 16;
 
-/// The end of the string that begins with the quote at `begin`: behind its last quote, or the end of the text.
+/// The end of the string that begins with the quote at `begin`: after its last quote, or at the end of the text.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string_view three = quote == '"' ? "\"\"\"" : "'''";

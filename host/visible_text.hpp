@@ -7,7 +7,7 @@
 namespace host {
 
 /// Printable ASCII stays; every other byte and the backslash are written as \xNN, so that no escape sequence, line feed
-/// or direction mark hides a part of what is shown.
+/// or direction mark hides a part of the text.
 std::string visible_text(std::string_view text);
 
 }  // namespace host

@@ -73,7 +73,7 @@ struct BentContact : PlainContact<true> {
   }
 };
 
-/// A contact on which further effects act; `motion` keeps what it remembers.
+/// A contact on which further effects act; `motion` holds its state.
 struct RichContact {
   const Drive& drive;
   DriveMotion& motion;
@@ -100,7 +100,7 @@ struct RichContact {
     return {level * point.effort + carried, remembers ? 0.0 : level * point.slope};
   }
 
-  /// The part that fluid and not the contact carries.
+  /// The part of the friction that the fluid causes, not the contact.
   FrictionPoint viscous(int side, double speed) const {
     const double coefficient = viscosity * drive.curves()[static_cast<std::size_t>(side)].viscous;
     return FrictionPoint{coefficient * speed, coefficient} + further_friction(drive, side, speed);

@@ -9,7 +9,7 @@ namespace sim {
 
 /// A load on a spring, with or without a gap between motor and table.
 struct SecondMass {
-  double load_fraction = 0.0;  ///< part of the inertia that sits behind the spring, 0..1
+  double load_fraction = 0.0;  ///< part of the inertia behind the spring, 0..1
   double resonance_Hz = 0.0;   ///< of both masses on the spring, free to move
   double damping_ratio = 0.0;
   double gap = 0.0;            ///< free travel, mm or m

@@ -8,16 +8,17 @@
 
 namespace sim {
 
-/// Coordinates that a free curve may go over.
+/// Possible coordinates of a free curve.
 inline constexpr std::string_view kCurveCoordinates[] = {
     "speed",   "position", "friction_along_position", "travel_since_reversal", "time", "friction_over_time",
     "current", "phase"};
 
-/// Straight between knots, level beyond the first and the last; over "phase" it comes back instead, and the distance
-/// from the first knot to the last, whose values are the same, is its period.
+/// Linear between knots, constant beyond the first and the last. Over "phase" it is periodic instead: first and last
+/// knot have equal values, and their distance is the period.
 class Curve {
  public:
-  /// From the entry's `knot` and `value`, which are as many; knots rise with their number.
+  /// Takes the entry's `knot` and `value` parameters. There are equally many of both, and knots ascend with their
+  /// number.
   explicit Curve(const EffectEntry& entry);
 
   double operator()(double q) const;
@@ -25,7 +26,7 @@ class Curve {
 
   const std::vector<double>& knots() const { return knots_; }
   const std::vector<double>& values() const { return values_; }
-  /// Travel until it comes back, mm or m; 0 where it does not.
+  /// Period along the travel, mm or m; 0 if the curve is not periodic.
   double period() const { return period_; }
 
  private:

@@ -1,4 +1,4 @@
-// The drive as its engineer writes it down: data-sheet values and a list of physical effects.
+// Description of a drive: data-sheet values and a list of physical effects.
 #pragma once
 
 #include <array>
@@ -31,11 +31,11 @@ struct DataSheet {
   double load_encoder_cyclic_error = 0.0;   ///< amplitude of its error within its period, mm or m
   double load_encoder_cyclic_period = 0.0;  ///< mm or m
   double load_encoder_cyclic_phase_rad = 0.0;
-  double load_encoder_offset_per_K = 0.0;     ///< by which its zero moves as the machine warms, mm or m a kelvin
+  double load_encoder_offset_per_K = 0.0;     ///< drift of its zero as the machine warms, mm or m per kelvin
   std::optional<double> tach_noise_variance;  ///< (rad/s)^2 or (m/s)^2; empty: the drive has no tachometer
 
   bool has_load_encoder() const { return load_encoder_resolution > 0.0; }
-  /// What the scale's reading adds to the table's travel, mm or m, so many kelvin above where its zero was taken.
+  /// Error of the scale's reading, mm or m, at this many kelvin above the temperature at which its zero was taken.
   double load_encoder_error(double travel, double warmer_K = 0.0) const {
     const double offset = load_encoder_offset_per_K * warmer_K;
     if (!(load_encoder_cyclic_period > 0.0)) return offset;
@@ -50,14 +50,14 @@ struct DataSheet {
   }
 };
 
-/// A parameter of which an effect may have many carries a number behind its id: "cosine_72" is the cosine of order 72.
-/// The id without it ("cosine"); an id without a number is its own family.
+/// A parameter of which an effect may have many has a number after its id: "cosine_72" is the cosine of order 72. The
+/// id without it ("cosine"); an id without a number is its own family.
 std::string_view family_of(std::string_view id);
 std::string numbered_id(std::string_view family, double number);
 /// The number in an id; empty if there is none.
 std::optional<double> number_of(std::string_view id);
 
-/// What a data sheet or a drawing says of a parameter.
+/// Prior knowledge of a parameter from a data sheet or a drawing.
 struct Belief {
   double value = 0.0;
   double deviation = 0.0;  ///< standard deviation, > 0
@@ -72,11 +72,11 @@ struct EffectEntry {
   std::map<std::string, std::array<double, 2>> ci95;  ///< 95 % interval of those parameters that were fitted
   std::string from;                                   ///< the record that the values came from; may be empty
   std::string over{};                                 ///< the coordinate of a free curve; empty for all else
-  std::set<std::string> held{};                       ///< parameters that a fit leaves as they stand
-  std::map<std::string, Belief> believed{};           ///< of those that are known roughly; a fit moves the value alone
+  std::set<std::string> held{};                       ///< parameters that a fit does not change
+  std::map<std::string, Belief> believed{};           ///< priors; a fit changes the value alone
 
   bool has(const std::string& id) const { return parameters.contains(id); }
-  /// Whether it holds a parameter of that family, whatever the number.
+  /// Whether it has a parameter of that family, with any number.
   bool has_any(std::string_view family) const;
   double at(const std::string& id) const { return parameters.at(id); }
   /// The magnitude for one direction: its own value, or the one that stands for both.

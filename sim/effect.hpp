@@ -1,5 +1,5 @@
-// What the catalogue knows of one physical effect. One such record makes an effect available to plant, predictor, fit,
-// model file, catalogue page, diagnosis and tests.
+// The catalogue's entry of one physical effect. It makes the effect available to plant, predictor, fit, model file,
+// catalogue page, diagnosis and tests.
 #pragma once
 
 #include <string_view>
@@ -13,7 +13,7 @@ class Drive;
 
 /// The quantity in whose units `ParameterInfo::starts` are given, so that one list suits drives of any size.
 enum class Scale {
-  unity,               ///< as they stand
+  unity,               ///< no scaling
   coulomb,             ///< the drive's Coulomb level, Nm or N
   inertia,             ///< the drive's inertia, kg m^2 or kg
   viscous,             ///< the drive's viscous coefficient
@@ -39,7 +39,7 @@ struct ParameterInfo {
   double lower;                 ///< physical bounds, in the unit of the key
   double upper;
   Scale scale = Scale::unity;
-  std::vector<double> starts{};  ///< where a fit begins, in units of `scale`; several where it has several local minima
+  std::vector<double> starts{};  ///< of a fit, in units of `scale`; several for several local minima
   bool optional = false;         ///< may be absent from a model file
   std::string_view
       pair_of{};  ///< set on the one-for-both-directions form: "positive" level stands for positive/negative
@@ -47,8 +47,8 @@ struct ParameterInfo {
   std::string_view key(DriveKind kind) const { return kind == DriveKind::rotary ? rotary_key : linear_key; }
 };
 
-/// Where in the drive an effect sits; it decides which screens apply to it.
-/// What acts on the `table` shows to a sensor on the table alone.
+/// The place of an effect in the drive, which determines the searches that include it. Only a sensor on the table shows
+/// effects on the `table`.
 enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer, table };
 
 struct EffectInfo {
@@ -57,24 +57,24 @@ struct EffectInfo {
   std::string_view equation;
   Stage stage;
   bool base = false;  ///< inertia, viscous, coulomb: re-fitted first, never a discovery
-  /// Has parameters `cosine`, `sine` and `period` over the travel, and the first two once for every order that it
-  /// holds: "cosine" is the first, "cosine_6" the sixth.
+  /// Has parameters `cosine`, `sine` and `period` over the travel, the first two once for every order: "cosine" is the
+  /// first, "cosine_6" the sixth.
   bool periodic = false;
   /// A curve over a coordinate (EffectEntry::over): has parameters `knot` and `value`, each once for every knot,
   /// numbered from 0.
   bool curve = false;
   std::vector<ParameterInfo> parameters;
   std::string_view shows;  ///< how it shows in the residual
-  /// Coordinates that its trace goes with, where something else has to say what is missing: speed, position,
+  /// Coordinates on which its residual depends, for a diagnosis without this effect: speed, position,
   /// travel_since_reversal, acceleration, current, rest, time, frequency.
   std::vector<std::string_view> along{};
   std::vector<std::string_view> confused_with;  ///< kinds that leave a similar trace
   std::string_view separate_by;                 ///< the experiment that tells them apart
-  std::string_view origin;                      ///< where on a machine it comes from
-  std::string_view remedy;                      ///< what a mechanic or an electrician can do about it
+  std::string_view origin;                      ///< its cause in a machine
+  std::string_view remedy;                      ///< remedies for a mechanic or an electrician
   void (*install)(const EffectEntry& entry, const DataSheet& data, Drive& drive);
 
-  /// The parameter of that id, whatever the number behind it; or nullptr.
+  /// The parameter of that id, with any number after it; or nullptr.
   const ParameterInfo* parameter(std::string_view id) const;
 };
 

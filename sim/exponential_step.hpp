@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// What a step of length h needs at z = lambda h: phi1 = (e^z - 1)/z and phi2 = (phi1 - 1)/z.
+/// Functions for a step of length h at z = lambda h: phi1 = (e^z - 1)/z and phi2 = (phi1 - 1)/z.
 struct ExponentialFactors {
   double phi1;
   double phi2;

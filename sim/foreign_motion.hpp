@@ -1,17 +1,17 @@
-// Motion that something other than the catalogue makes, another simulator say, behind the same converter and sensors.
+// Motion from another source than the catalogue, such as another simulator, with the same converter and sensors.
 #pragma once
 
 #include <optional>
 
 namespace sim {
 
-/// What the sensors of such a machine see, in the units of its data sheet.
+/// Sensor readings of such a machine, in the units of its data sheet.
 struct ForeignReading {
-  double x = 0.0;           ///< position at the encoder, mm or m, before it is counted
-  std::optional<double> w;  ///< what the tachometer shows, rad/s or m/s; empty where there is none
+  double x = 0.0;           ///< position at the encoder, mm or m, before rounding to counts
+  std::optional<double> w;  ///< reading of the tachometer, rad/s or m/s; empty without one
 };
 
-/// One axis of it.
+/// One axis of such a machine.
 class ForeignMotion {
  public:
   virtual ~ForeignMotion() = default;
@@ -19,7 +19,7 @@ class ForeignMotion {
   /// The converter's voltage from now on; empty: the drive is disabled.
   virtual void command(std::optional<double> u_V) = 0;
 
-  /// Lets the machine run.
+  /// Advances the machine.
   virtual void advance(double duration_s) = 0;
 
   virtual ForeignReading reading() const = 0;

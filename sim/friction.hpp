@@ -10,7 +10,7 @@
 
 namespace sim {
 
-/// Friction never drives, whatever a fit tries.
+/// Friction never drives, whatever values a fit tries.
 inline FrictionPoint never_driving(const FrictionPoint& friction) {
   return friction.effort < 0.0 ? FrictionPoint{0.0, 0.0} : friction;
 }
@@ -57,7 +57,7 @@ struct SmoothStep {
   }
 };
 
-/// `slide` in full, with the stops and starts on the way.
+/// The general case of `slide`, with stops and starts within the step.
 template <typename Contact>
 [[gnu::noinline]] void slide_through_stops(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
   constexpr int kMostEvents = 8;
@@ -74,7 +74,8 @@ template <typename Contact>
     }
     const double speed = std::abs(mass.w);
     const SmoothStep step(direction * effort, contact.sliding(direction > 0.0 ? 0 : 1, speed), mass.mobility);
-    if (speed == 0.0 && step.acceleration <= 0.0) {  // breakaway and curve agree at zero speed, up to rounding
+    if (speed == 0.0 &&
+        step.acceleration <= 0.0) {  // breakaway level and curve are equal at zero speed, up to rounding
       contact.rested(left);
       return;
     }
@@ -116,8 +117,9 @@ template <typename Contact>
   slide_through_stops(mass, effort, duration_s, contact);
 }
 
-/// `slide` where the effort changes once, `change_s` after the start; false, with the mass as it was, where it may
-/// stop on the way. Friction is linearised once for both parts: exact where it is Coulomb and viscous, order 2 else.
+/// `slide` for an effort that changes once, `change_s` after the start. False, with the mass unchanged, if it may stop
+/// within the step. Friction is linearised once for both parts: exact for Coulomb and viscous friction, otherwise of
+/// order 2.
 template <typename Contact>
 inline bool slide_through_change(SlidingMass& mass, double before, double after, double change_s, double duration_s,
                                  Contact& contact) {
@@ -127,7 +129,7 @@ inline bool slide_through_change(SlidingMass& mass, double before, double after,
   const double later_s = duration_s - change_s, change = direction * (after - before) * mass.mobility;
   const ExponentialFactors all = exponential_factors(step.lambda * duration_s);
   const ExponentialFactors later = exponential_factors(step.lambda * later_s);
-  // Each part is monotone: where its ends move, all of it does.
+  // Each part is monotone: if the mass moves at both ends, it moves throughout.
   const double unchanged = step.speed_after(speed, duration_s, all);
   const double end = unchanged + later.phi1 * later_s * change;
   if (!(unchanged > 0.0 && end > 0.0)) return false;
@@ -136,7 +138,8 @@ inline bool slide_through_change(SlidingMass& mass, double before, double after,
   return true;
 }
 
-/// The friction of one contact linearised once for several short steps in a row, which then cost a few operations each.
+/// The friction of one contact, linearised once for several consecutive short steps, which then need only a few
+/// operations each.
 class LinearisedContact {
  public:
   template <typename Contact>
@@ -151,13 +154,13 @@ class LinearisedContact {
 
   /// The speed after a step under a constant effort.
   double after(double w, double effort) const { return kept_ * w + (kick_ * effort - lost_); }
-  /// Whether the mass still slides in its direction with such a speed at the end of a step; never from rest.
+  /// Whether a mass with this speed at the end of a step still slides in its direction; never from rest.
   bool holds_for(double end) const { return direction_ * end > 0.0; }
 
  private:
   double direction_;
   double kick_;         ///< speed per effort
-  double kept_, lost_;  ///< of the speed: its part, and what Coulomb friction takes
+  double kept_, lost_;  ///< of the speed: the remaining part, and the loss by Coulomb friction
 };
 
 }  // namespace sim

@@ -49,7 +49,7 @@ class Harmonics {
     for (const Wave& wave : waves_) sum += wave.amplitude * cosine_of_turns(x * wave.per_travel - wave.phase);
     return sum;
   }
-  /// The shortest period that it holds, mm or m.
+  /// The shortest period among its orders, mm or m.
   double finest_period() const { return finest_period_; }
 
  private:

@@ -1,4 +1,4 @@
-// What the effects that repeat along the travel have in common.
+// Common parts of the effects that repeat along the travel.
 #pragma once
 
 #include <string_view>
@@ -17,7 +17,7 @@ inline ParameterInfo period_parameter() {
           .scale = Scale::millimetre};
 }
 
-/// Of an error of a position: its cosine or its sine.
+/// Parameter of a position error: its cosine or its sine.
 inline ParameterInfo position_error_parameter(bool is_cosine) {
   return {.id = is_cosine ? "cosine" : "sine",
           .rotary_key = is_cosine ? "cosine_mm" : "sine_mm",

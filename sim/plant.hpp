@@ -17,29 +17,29 @@ class Plant {
   /// Throws std::invalid_argument for a description that the catalogue cannot build.
   Plant(const DriveDescription& description, std::uint64_t seed);
 
-  /// From now on `motion` takes the place of the drive and of the tachometer's noise; data sheet, converter and encoder
-  /// stay. Positions are rounded to counts. The true motion is then what the encoder sees.
+  /// From now on `motion` replaces the drive and the tachometer's noise; data sheet, converter and encoder stay.
+  /// Positions are rounded to counts. The true motion is then the motion at the encoder.
   void hand_over(std::shared_ptr<ForeignMotion> motion);
 
   /// Sets the D/A converter, volts: limited to its range, rounded to its resolution, held until the next call.
   void set_command(double u_V);
 
-  /// Opens or closes the amplifier's enable: without it the motor is free of current.
+  /// Sets or drops the amplifier's enable: without it the motor has no current.
   void set_enabled(bool enabled);
 
-  /// Lets the machine run. Internal steps are at most 0.25 ms, so that the error of one step stays far below an encoder
+  /// Advances the machine. Internal steps are at most 0.25 ms, so that the error of one step stays far below an encoder
   /// count at any acceleration that a drive reaches.
   void advance(double duration_s);
 
   /// Encoder position, counts from the start: the edge that was passed last (rounding down), as a quadrature counter
   /// does.
   std::int64_t encoder_counts() const { return counts_at(encoder_travel()); }
-  /// What the encoder's grid is laid over, mm or m, and the counts there.
+  /// The encoder's position before rounding, mm or m, and its counts.
   double encoder_travel() const { return foreign_ ? state_.x : drive_.encoder(state_); }
   std::int64_t counts_at(double encoder_travel) const;
 
-  /// What the scale on the table reads, mm or m, on its own grid; empty for a drive without one, and where a foreign
-  /// motion has taken the drive's place.
+  /// Reading of the scale on the table, mm or m, rounded to its resolution; empty for a drive without one, and if a
+  /// foreign motion replaces the drive.
   std::optional<double> read_load_encoder() const;
 
   /// A tachometer reading, rad/s or m/s, with fresh noise; empty for a drive without one.
@@ -49,7 +49,7 @@ class Plant {
   double command_V() const { return command_V_; }
   const DataSheet& data() const { return data_; }
 
-  /// The true motion, for comparison with what the sensors say.
+  /// The true motion, for comparison with the sensors.
   const DriveState& truth() const { return state_; }
   DriveState& truth() { return state_; }
   /// True travel of the table, which may be a mass of its own behind a spring or a gap.

@@ -34,7 +34,7 @@ class Power {
 
  private:
   static constexpr int kCellBits = 5, kCells = 1 << kCellBits, kTerms = 6;
-  static constexpr int kLowest = -24, kOctaves = 40;  // 6e-8 to 6.5e4: beyond it the library's function is asked
+  static constexpr int kLowest = -24, kOctaves = 40;  // 6e-8 to 6.5e4: beyond it the library's function is used
   static constexpr auto kPerMiddle = [] {
     std::array<double, kCells> values{};
     for (int k = 0; k < kCells; ++k) values[k] = kCells / (kCells + k + 0.5);

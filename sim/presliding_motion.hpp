@@ -10,8 +10,8 @@
 
 namespace sim {
 
-/// Longest step: half a radian of the mass swinging on its bristles, which the scheme slows by 0.03 % and damps by
-/// 0.1 % a step; at most 1 ms. Not below 20 us: contacts so stiff deflect by nanometres.
+/// Longest step: half a radian of the oscillation of the mass on its bristles, which the scheme slows by 0.03 % and
+/// damps by 0.1 % per step; at most 1 ms. Not below 20 us: stiffer contacts deflect by nanometres only.
 inline double presliding_step_s(const Bristles& bristles, double inertia) {
   return std::clamp(0.5 * std::sqrt(inertia / bristles.stiffness), 20e-6, 1e-3);
 }
@@ -27,8 +27,8 @@ struct MassOnBristles {
   double w, z;
   double speeds = 0.0;  ///< twice the sum of the steps' mean speeds
 
-  /// With `kChecked`: false, with the mass as it was, where it turns over or its friction's level changes too much for
-  /// a straight line.
+  /// With `kChecked`: false, with the mass unchanged, if it reverses or its friction level changes too much for a
+  /// linear approximation.
   template <bool kChecked>
   [[gnu::always_inline]] bool step() {
     const double stiffness = bristles.stiffness, damping = bristles.damping * mobility;
@@ -36,7 +36,7 @@ struct MassOnBristles {
     const double sign = w >= 0.0 ? 1.0 : -1.0, speed = std::abs(w);
     const FrictionPoint dry = contact.dry(side, speed), viscous = contact.viscous(side, speed);
     const double level = std::max(dry.effort, 1e-9), per_level = 1.0 / level;
-    const double bent = stiffness * per_level * z;  // part of what steady sliding bends it by
+    const double bent = stiffness * per_level * z;  // relative to the deflection in steady sliding
 
     const double z_rate = w - speed * bent;
     const double w_rate = (effort - stiffness * z - sign * viscous.effort) * mobility - damping * z_rate;
@@ -56,7 +56,7 @@ struct MassOnBristles {
     const double faster = h_per_determinant * (d * right_w - b * right_z), end = w + faster;
     constexpr double kMostChange = 0.03;
     if (kChecked && (end * w < 0.0 || std::abs(dry.slope * faster) > kMostChange * level)) return false;
-    // A bristle gives way before it is bent half as far again as steady sliding bends it.
+    // The deflection of a bristle stays below 1.5 times that of steady sliding.
     const double most = 1.5 / stiffness * level;
     z = std::clamp(z + h_per_determinant * (a * right_z - c * right_w), -most, most);
     speeds += w + end;
@@ -65,7 +65,7 @@ struct MassOnBristles {
   }
 };
 
-/// Moves both for `parts` steps of `duration_s` each under a constant effort, a step in two where it has to be.
+/// Moves both for `parts` steps of `duration_s` each under a constant effort; halves a step if necessary.
 template <typename Contact>
 [[gnu::noinline]] void move_on_bristles_in_short_steps(const Bristles& bristles, double mobility, double lead,
                                                        DriveMotion& motion, double effort, double duration_s, int parts,
@@ -91,8 +91,8 @@ template <typename Contact>
     move_on_bristles_in_short_steps(bristles, mobility, lead, motion, effort, duration_s, parts - done, contact);
 }
 
-/// Lets the deflection follow a speed that is known: the bristle's equation, drawn towards the deflection that carries
-/// `contact_effort` (what the motor gives beyond acceleration) as fast as the mass on the bristles itself settles.
+/// Lets the deflection follow a known speed: the bristle's equation, corrected towards the deflection that carries
+/// `contact_effort` (the motor's effort minus that for acceleration) as fast as the mass on the bristles settles.
 template <typename Contact>
 void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& motion, double w, double contact_effort,
                      double duration_s, const Contact& contact) {
@@ -101,12 +101,12 @@ void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& moti
   const double g = contact.dry(side, speed).effort;
   if (g <= 0.0) return;
   const double settled = g / bristles.stiffness;
-  const double left = decay(speed / settled * duration_s);  // of what it was off before this step
+  const double left = decay(speed / settled * duration_s);  // of its error before this step
   if (w != 0.0) motion.bristle = sign * settled + (motion.bristle - sign * settled) * left;
   const double viscous = sign * contact.viscous(side, speed).effort;
   const double carried = (contact_effort - viscous - bristles.damping * w) / bristles.stiffness;
-  // What was wrong at rest fades with the travel; the less is left of it, the more the noise of the acceleration would
-  // spoil. Kalman's gain goes with the square.
+  // The error at rest fades with the travel. The smaller it is, the more the noise of the acceleration would disturb,
+  // so the gain, as Kalman's, is proportional to its square.
   if (w == 0.0) motion.bristle_doubt = 1.0;
   motion.bristle_doubt *= left;
   const double rate = motion.bristle_doubt * motion.bristle_doubt * std::sqrt(bristles.stiffness / inertia);

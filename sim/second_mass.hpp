@@ -12,8 +12,8 @@ namespace sim {
 /// Whether an effect puts a second mass behind the motor.
 inline bool is_second_mass(std::string_view kind) { return kind == "compliance" || kind == "backlash"; }
 
-/// Of an entry of compliance or backlash; all friction acts on the load's side unless the entry says otherwise, and
-/// viscous friction as dry friction does.
+/// From an entry of compliance or backlash. Unless the entry says otherwise, all friction acts on the load's side, and
+/// viscous friction has the same share as dry friction.
 inline SecondMass second_mass_of(const EffectEntry& entry) {
   const auto given = [&](const char* id, double otherwise) { return entry.has(id) ? entry.at(id) : otherwise; };
   const double dry = given("load_friction", 1.0);

@@ -1,4 +1,4 @@
-// What the effects of warming up have in common.
+// Common parts of the effects of warming up.
 #pragma once
 
 #include <string_view>

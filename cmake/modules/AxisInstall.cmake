@@ -3,7 +3,7 @@ include(AxisVersion)
 set(AXIS_ZSH_DIR "share/zsh/site-functions" CACHE STRING "Where zsh looks for completions, below the prefix")
 set(DOCUMENTS "${CMAKE_BINARY_DIR}/documents")
 
-# Manual, completions and udev rule are what the program says of itself.
+# The program itself writes manual, completions and udev rule.
 add_custom_command(OUTPUT "${DOCUMENTS}/stamp"
   COMMAND "${CMAKE_COMMAND}" -E rm -rf "${DOCUMENTS}"
   COMMAND "${AXIS_ROOT}/cmake/package/documents.sh" "$<TARGET_FILE:axistool>" "${DOCUMENTS}" "${AXIS_ROOT}" "${AXIS_VERSION}"

@@ -1,4 +1,4 @@
-# Version and commit, as a header <build_version.hpp> that is touched when they change only.
+# Version and commit, as a header <build_version.hpp> that is written only if they change.
 include_guard(GLOBAL)
 set(AXIS_VERSION "0.1.0")
 set(BUILD_VERSION "${CMAKE_BINARY_DIR}/version/build_version.hpp")

@@ -14,7 +14,8 @@ if(AXIS_SANITIZE)
                          -O1 -g1)
   target_link_options(axis_flags INTERFACE -fsanitize=address,undefined)
 endif()
-# The host tools leave out what the address sanitizer or the processor finds too: it takes a third of the compile time.
+# The host tools omit checks that the address sanitizer or the processor also makes: they take a third of the compile
+# time.
 add_library(axis_host_flags INTERFACE)  # linked after axis_flags
 if(AXIS_SANITIZE)
   target_compile_options(axis_host_flags INTERFACE -fno-sanitize=null,alignment,vptr,object-size,pointer-overflow)

@@ -1,7 +1,6 @@
 #!/bin/bash
-# in_fresh_debian.sh PACKAGE.deb ...: installs the packages in a Debian 12 that holds nothing else, uses them as their
-# user would, removes them, and says what is left behind. As root; mmdebstrap makes the system in a temporary folder, from
-# MIRROR.
+# in_fresh_debian.sh PACKAGE.deb ...: installs the packages in an otherwise empty Debian 12, uses them like a user,
+# removes them, and lists remaining files. As root; mmdebstrap makes the system in a temporary folder, from MIRROR.
 set -euo pipefail
 mirror=${MIRROR:-http://deb.debian.org/debian}
 root=$(mktemp -d)
@@ -13,7 +12,7 @@ files() { (cd "$root/system" && find etc usr opt srv var/lib -not -path 'var/lib
 
 mount -t proc proc "$root/system/proc"
 inside apt-get -qq update
-# What the packages need comes first, so that only their own files are compared.
+# Their dependencies are installed first, so that only the packages' own files are compared.
 needs=$(for package in "$@"; do dpkg-deb -f "$package" Depends; done |
   sed -e 's/([^)]*)//g' -e 's/|[^,]*//g' -e 's/:any//g' -e 's/,/ /g' -e 's/\baxistool\b//g')
 inside apt-get -qq install -y --no-install-recommends $needs > /dev/null 2>&1

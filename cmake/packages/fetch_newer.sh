@@ -1,7 +1,7 @@
 #!/bin/sh
 # fetch_newer.sh FOLDER PACKAGE...: unpacks packages of Debian 13 (newer.txt) into FOLDER/PACKAGE without installing them, so
 # that Debian 12 can build with them. apt reads a list of its own with this machine's mirror and checks the signatures;
-# the system's sources stay as they are. Silent and quick when all is there.
+# the system's sources stay as they are. Silent and quick if nothing is missing.
 set -eu
 suite=trixie
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that this machine lacks of the lists named: install.sh build test
-# Silent and quick when nothing is missing.
+# Silent and quick if nothing is missing.
 set -eu
 
 lists_folder=$(dirname "$0")

@@ -6,7 +6,7 @@
 
 namespace firmware {
 
-/// At one instant, without the velocity. `fitted`, `pitch_on`: what its parameters say.
+/// Values of one instant, without the velocity. `fitted`, `pitch_on`: from the parameters.
 template <typename Axis>
 AxisStatus axis_status(const Axis& axis, bool fitted, bool pitch_on) {
   AxisStatus status;

@@ -1,4 +1,4 @@
-// What a board does besides its pins: parameters, axes, capture, store; the same class on every board and on the PC.
+// The firmware above the hardware: parameters, axes, capture, store; the same class on every board and on the PC.
 #pragma once
 
 #include <algorithm>
@@ -105,7 +105,7 @@ class BoardApplication {
     active_ = staged_;
     active_crc_ = set_crc(active_);
     if (changed == active_.size() && set_fits_) {
-      const BoardLimits limits = board_limits(active_);  // all that may change while an axis moves
+      const BoardLimits limits = board_limits(active_);  // the only values that may change while an axis moves
       const typename Board::ControlShutOut guard;
       axes_.board().configure(limits);
       return Status::ok;
@@ -119,7 +119,7 @@ class BoardApplication {
     return Status::ok;
   }
 
-  /// The control interrupt stands still meanwhile: the outputs are off, and it could not run from stalled flash.
+  /// The control interrupt is stopped meanwhile: the outputs are off, and it could not run from stalled flash.
   Status save() {
     if (any_enabled()) return Status::drive_enabled;
     const bool was_usable = store_is_usable();
@@ -133,14 +133,14 @@ class BoardApplication {
     return status_of(result);
   }
 
-  /// Likewise, of a part of a table or an image; while no drive is enabled.
+  /// The same for a part of a table or an image. Only while no drive is enabled.
   template <typename Write>
   auto write_flash(Write write) {
     const typename Board::ControlShutOut guard;
     return while_stalled(write);
   }
 
-  /// Makes the staged table the axis's, switches it, and saves it with the parameters; while no drive is enabled.
+  /// Makes the staged table the axis's, switches it on or off, and saves it with the parameters. No drive is enabled.
   Status finish_table(std::uint32_t crc, bool on) {
     staged_ = active_;
     staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
@@ -156,7 +156,7 @@ class BoardApplication {
 
   Store& store() { return store_; }
 
-  /// A damaged or half understood set, or one that this firmware's control core refuses, keeps every drive disabled.
+  /// A set that is damaged, partly unknown, or refused by the control core keeps every drive disabled.
   bool store_is_usable() const {
     const StoreState state = store_.report().state;
     return set_fits_ && state != StoreState::damaged && state != StoreState::incomplete;
@@ -164,7 +164,7 @@ class BoardApplication {
 
   bool is_fitted(std::size_t axis) const { return active_.axis(axis).template get<"drive.fitted">(); }
 
-  /// All axes of the mask or none of them; `refused` is the axis that cannot be enabled.
+  /// Enables all axes of the mask or none of them; `refused` is the axis that cannot be enabled.
   Status enable(unsigned mask, std::size_t& refused) {
     for (refused = 0; refused < Axes::kAxes; ++refused) {
       if ((mask >> refused & 1u) == 0) continue;
@@ -174,15 +174,15 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     refused = axes_.enable(mask);
     if (refused == Axes::kAxes) {
-      axes_.board().host_heard();  // before the next period watches for it
+      axes_.board().host_heard();  // before the monitor of the next period
       axes_.board().forget_left_alone();
       return Status::ok;
     }
     return axes_[refused].state() == SupervisorState::ready ? Status::not_standing : refusal(refused);
   }
 
-  /// An orderly stop; the enable drops at standstill. Of an axis on a path all stop there, and this one is disabled at
-  /// the path's end.
+  /// A stop along the ramp; the enable drops at standstill. If the axis is on a path, all its axes stop on the path,
+  /// and this one is disabled at the path's end.
   void disable(std::size_t axis) {
     if (path_.disables_at_end(axis)) return;
     const typename Board::ControlShutOut guard;
@@ -211,7 +211,7 @@ class BoardApplication {
     return Status::ok;
   }
 
-  /// To a position, which only a homed axis knows, or `relative`: by so many counts.
+  /// To a position (only a homed axis), or if `relative` by this many counts.
   Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
@@ -219,7 +219,7 @@ class BoardApplication {
         return refusal(axis);
       if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
-    // At rest the reference stands still, and only this background can change that.
+    // At rest the reference is constant, and only this background code can change that.
     const MovePlanResult planned = relative ? axes_[axis].plan_move_by(counts, unhomed_share(active_.axis(axis)))
                                             : axes_[axis].plan_move_to(CountPosition::at(counts));
     if (planned.refusal != Refusal::none) return status_of(planned.refusal);
@@ -236,8 +236,8 @@ class BoardApplication {
   }
   bool is_others_excitation(ClientToken client) const { return excitation_.is_others(client); }
 
-  /// In open loop of an axis that stands, disabled, and needs no design (`refused`: the limit that it has without); in
-  /// closed loop of one that is enabled and at rest.
+  /// In open loop: for a disabled axis at rest, which needs no design (`refused`: the limit that applies without one).
+  /// In closed loop: for an enabled axis at rest.
   Status excite(const ExcitationRequest& request, RefusedValuePayload& refused) {
     const std::size_t axis = request.axis;
     if (excitation_.is_active() || is_led(axis)) return Status::wrong_state;
@@ -269,7 +269,7 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     return excitation_.state();
   }
-  /// A path, of axes that are enabled and stand. The rest of it is the path's own.
+  /// A path of enabled axes at rest. Its other functions are those of path().
   Status open_path(const OpenPathRequest& request, ClientToken client, OpenPathPayload& opened) {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       if ((request.mask >> axis & 1u) == 0) continue;
@@ -287,13 +287,13 @@ class BoardApplication {
     return positive ? limit_reply<"monitor.travel_max">(active_, axis)
                     : limit_reply<"monitor.travel_min">(active_, axis);
   }
-  /// On which side of an axis a target lies.
+  /// The side of an axis on which a target lies.
   bool is_ahead(std::size_t axis, std::int64_t target_counts) {
     const typename Board::ControlShutOut guard;
     return target_counts > axes_[axis].telemetry().encoder_counts;
   }
 
-  /// Looks for home, or is told by the operator that the axis stands there; homing.mode says which of them it is.
+  /// Looks for home, or, as the operator states, the axis stands there; homing.mode determines which is allowed.
   Status home(std::size_t axis, bool here) {
     if (!is_fitted(axis)) return Status::not_fitted;
     const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);
@@ -313,7 +313,7 @@ class BoardApplication {
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].clear_fault();
   }
 
-  /// A round of the background. Like save() it writes flash while the control interrupt stands still.
+  /// A round of the background. Like save() it writes flash while the control interrupt is stopped.
   void keep_fault_log() {
     look_for_faults();
     if (!fault_log_.wants_flash() || any_enabled()) return;
@@ -328,16 +328,16 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     return excitation_.is_active() || path_.is_moving() || axes_.is_in_motion();
   }
-  // Whose motion it is. Everybody may look, stop and disable.
+  // Ownership of motion. Every client may read, stop and disable.
   bool may_command(ClientToken client) { return owner_.may_command(client, is_in_motion()); }
-  /// It has commanded motion, or takes over what another commanded.
+  /// The client has commanded motion, or takes over another's motion.
   void become_owner(ClientToken client) {
     owner_.become(client);
     path_.take_over(client);
     owner_heard(client);
   }
   bool is_owner(ClientToken client) const { return owner_.is(client); }
-  /// A request of the owner proves that it is there; while every axis stands it may be silent for longer.
+  /// A request of the owner proves that it is alive; while every axis stands, it may be silent for longer.
   void owner_heard(ClientToken client) {
     if (!owner_.is(client)) return;
     const bool in_motion = is_in_motion();
@@ -352,7 +352,7 @@ class BoardApplication {
   }
   CaptureStream& capture() { return capture_; }
 
-  /// A capture in the board's memory; `after` of 0 ends the one that is armed.
+  /// A capture in the board's memory; `after` = 0 ends an armed capture.
   Status arm(const TriggerRequest& request) {
     if (request.after != 0 && !trigger_.is_possible(request, kAxes)) return Status::malformed;
     const typename Board::ControlShutOut guard;
@@ -366,13 +366,13 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     return trigger_.state();
   }
-  /// False beyond the end, and while rows still come.
+  /// False beyond the end, and while rows are still being recorded.
   bool read_triggered(std::uint32_t first, TriggeredPayload& payload) const {
     const typename Board::ControlShutOut guard;
     return trigger_.read(first, payload);
   }
 
-  /// Axes that stood were disabled after host.standing_timeout, and not enabled since.
+  /// Axes at rest were disabled after host.standing_timeout and have not been enabled since.
   bool was_left_alone() const { return axes_.board().was_left_alone(); }
 
   /// The state of an axis at one instant.
@@ -384,16 +384,16 @@ class BoardApplication {
       status = firmware::axis_status(axes_[axis], is_fitted(axis), active_.axis(axis).template get<"pitch.on">());
       velocity = axes_[axis].telemetry().estimate.velocity;
     }
-    status.velocity = velocity_of_drive(axis, velocity);  // takes its time, and the control interrupt runs again
+    status.velocity = velocity_of_drive(axis, velocity);  // takes long, so the control interrupt runs again
     return status;
   }
 
-  /// A row of what the axis kept when a fault stopped it; false beyond the last.
+  /// A row that the axis kept from before its fault; false beyond the last.
   bool fault_row(std::size_t axis, std::size_t row, FaultRowPayload& payload) {
     return firmware::fault_row(axes_[axis], row, payload);
   }
 
-  /// Or about to be.
+  /// Or about to be moved.
   bool any_enabled() const {
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (axes_[axis].is_or_will_be_on()) return true;
@@ -417,10 +417,10 @@ class BoardApplication {
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
-  /// By an experiment or a path.
+  /// Whether an experiment or a path moves it.
   bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
 
-  /// While the control interrupt is shut out, before a motion that may hit something; false if one has.
+  /// Call it with the control interrupt disabled, before a motion; false while axes slow down after a contact.
   bool guard_motion() { return probe_.begin_motion(probe_contact(active_)); }
 
   void look_for_faults() {
@@ -437,7 +437,7 @@ class BoardApplication {
     return result;
   }
 
-  /// While no drive is enabled. What takes long is done with the control interrupt running: SupervisedAxis::configure.
+  /// Only while no drive is enabled. The long part runs with the control interrupt enabled: SupervisedAxis::configure.
   void configure_all() {
     const BoardLimits limits = board_limits(active_);
     {
@@ -462,7 +462,7 @@ class BoardApplication {
     }
   }
 
-  /// With the tables that go with the values.
+  /// With the tables that belong to the values.
   SetRefusal check_all(const ParameterValues& values) const {
     const SetRefusal found = check<Scalar>(values);
     return found.kind == ValueRefusal::none ? check_tables(values, store_) : found;

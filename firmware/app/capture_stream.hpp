@@ -1,4 +1,4 @@
-// Samples on their way from the control interrupt to the host: chosen channels, at loop rate, loss counted.
+// Queue of samples from the control interrupt to the host: selected channels, at loop rate, with a count of lost rows.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace firmware {
 
-/// One writer (take, in the control interrupt) and one reader (the others, in the background). The newest row is
-/// dropped where there is no room; its number is used up all the same.
+/// One writer (take, in the control interrupt) and one reader (the other functions, in the background). If there is no
+/// room, the newest row is dropped, but its number is still counted.
 class CaptureStream {
  public:
-  static constexpr std::size_t kRows = 64;  ///< what the background may lag: 64 ms at 1 kHz
+  static constexpr std::size_t kRows = 64;  ///< allowed delay of the background: 64 ms at 1 kHz
 
-  /// While the control interrupt is shut out. At least one channel and at most kWordsPerReport, every >= 1.
+  /// Call it while the control interrupt is disabled. At least one channel and at most kWordsPerReport, every >= 1.
   void start(const CaptureRequest& request) {
     channels_ = request.channels;
     words_ = request.words();
@@ -35,7 +35,7 @@ class CaptureStream {
   std::size_t words_per_row() const { return words_; }
   CaptureReply counts() const { return {rows_taken_, dropped_}; }
 
-  /// Once a control period, after the axes' steps. An AxisGroup, which has all the axes that were asked for.
+  /// Once a control period, after the axes' steps. `axes`: an AxisGroup that has all requested axes.
   template <typename Axes>
   void take(const Axes& axes) {
     if (!is_running_ || --until_next_ > 0) return;
@@ -56,8 +56,8 @@ class CaptureStream {
     written_.store(written + 1, std::memory_order_release);
   }
 
-  /// Takes the next rows that fit one report and have numbers in a row. `only_full`: none unless the report gets full.
-  /// 0 when there is nothing to send.
+  /// Takes the next rows with consecutive numbers that fit one report. `only_full`: only if they fill the report.
+  /// Returns 0 if there is nothing to send.
   std::size_t fetch(SamplesPayload& payload, bool only_full) {
     const std::uint32_t read = read_.load(std::memory_order_relaxed);
     const std::uint32_t waiting = written_.load(std::memory_order_acquire) - read;
@@ -67,7 +67,7 @@ class CaptureStream {
     payload.first_row = rows_[read % kRows].number;
     std::uint32_t rows = 0;
     while (rows < waiting && rows < room && rows_[(read + rows) % kRows].number == payload.first_row + rows) ++rows;
-    const bool is_cut = rows < room && rows < waiting;  // a gap follows: no more will come to this report
+    const bool is_cut = rows < room && rows < waiting;  // a gap follows: no more rows fit this report
     if (only_full && rows < room && !is_cut) return 0;
     for (std::uint32_t i = 0; i < rows; ++i)
       for (std::size_t word = 0; word < words_; ++word)

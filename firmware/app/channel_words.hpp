@@ -1,4 +1,4 @@
-// What a captured row holds of an axis, as words of 32 bits or halved.
+// The words of an axis in a captured row, with 32 or 16 bits.
 #pragma once
 
 #include <bit>
@@ -22,7 +22,7 @@ constexpr std::uint32_t bits_of(Scalar value) {
 
 }  // namespace channel_words
 
-/// Whether the hardware of a SupervisedAxis has a second encoder, on the table.
+/// Whether the hardware of a SupervisedAxis has a second encoder on the table.
 template <typename Axis>
 constexpr bool has_scale(const Axis& axis) {
   if constexpr (hal::TableEncoderHal<std::remove_reference_t<decltype(axis.hal())>>)
@@ -75,7 +75,7 @@ std::uint32_t channel_word(const Axis& axis, Channel channel) {
          (seen.saturated ? 1u << 16 : 0u);
 }
 
-/// A row of what a SupervisedAxis kept when a fault stopped it; false beyond the last.
+/// A row that a SupervisedAxis kept from before its fault; false beyond the last.
 template <typename Axis>
 bool fault_row(const Axis& axis, std::size_t row, FaultRowPayload& payload) {
   using channel_words::bits_of;
@@ -95,7 +95,7 @@ bool fault_row(const Axis& axis, std::size_t row, FaultRowPayload& payload) {
   return true;
 }
 
-/// Whole numbers, which a difference compares; the others are scalars.
+/// Channels that are whole numbers, compared by their difference; the others are scalars.
 constexpr bool is_whole(Channel channel) {
   return channel == Channel::dac_code || channel == Channel::counts || channel == Channel::reference ||
          channel == Channel::flags;

@@ -1,4 +1,4 @@
-// Velocities between the host, in mm/s, rad/s and m/s, and a core that may compute in fixed point.
+// Converts velocities between the host's units (mm/s, rad/s, m/s) and those of a core that may compute in fixed point.
 #pragma once
 
 #include <type_traits>
@@ -8,7 +8,7 @@
 
 namespace firmware {
 
-/// Of a jog, mm/s (m/s).
+/// Velocity of a jog, mm/s (m/s).
 template <typename Scalar>
 Scalar to_core_travel_velocity(float velocity, const AxisValues& values) {
   if constexpr (std::is_same_v<Scalar, float>)
@@ -17,7 +17,7 @@ Scalar to_core_travel_velocity(float velocity, const AxisValues& values) {
     return Scalar::from(velocity / FixedUnits<float>(axis_parameters<float>(values)).travel_velocity);
 }
 
-/// Of the drive, rad/s (m/s).
+/// Velocity of the drive, rad/s (m/s).
 template <typename Scalar>
 float from_core_velocity(Scalar velocity, const AxisValues& values) {
   if constexpr (std::is_same_v<Scalar, float>)

@@ -1,4 +1,4 @@
-// Excitations as the host asks for them: one at a time, on one axis.
+// Carries out the host's requests for excitations: one at a time, on one axis.
 #pragma once
 
 #include "firmware/app/motion_owner.hpp"
@@ -20,9 +20,9 @@ class ExcitationService {
     run_.before_step(axes[axis_]);
   }
 
-  // The background, while nothing is active.
+  // For the background, while nothing is active.
 
-  /// Entries belong together: of one client, for one axis and one input. Others' are forgotten.
+  /// All entries must be of one client, for one axis and one input; other entries are discarded.
   bool load(const ExcitationEntriesRequest& request, ClientToken client, const AxisValues& values, float rate_Hz) {
     if (request.count > kEntriesPerReport || request.first + request.count > kExcitationEntries ||
         request.input >= kExcitationInputs)
@@ -42,11 +42,11 @@ class ExcitationService {
     return true;
   }
 
-  /// What was loaded no longer counts: its owner is another, or its units have changed.
+  /// Discards the loaded entries, because their owner or their units have changed.
   void forget() { loaded_ = 0; }
   bool is_others(ClientToken client) const { return loaded_ != 0 && client != client_; }
 
-  /// False where it makes no sense, or not all of its entries were loaded for it. start() follows.
+  /// False if it is not possible, or not all of its entries were loaded. start() follows.
   bool plan(const ExcitationRequest& r, const AxisValues& values, float rate_Hz) {
     for (const float value : {r.speed, r.drive_velocity, r.volts, r.amplitude, r.ride})
       if (!ScalarTraits<float>::is_finite(value)) return false;
@@ -78,7 +78,7 @@ class ExcitationService {
     return true;
   }
 
-  // The background, while the control interrupt is shut out.
+  // For the background, while the control interrupt is disabled.
   void start() { run_.start(); }
   void stop() { run_.stop(); }
   ExcitationStatePayload state() const {
@@ -106,7 +106,7 @@ class ExcitationService {
     }
   }
 
-  /// The request tells the same speed in both units.
+  /// The request contains the same speed in both units.
   static Scalar velocity_in_core_units(const ExcitationRequest& r) {
     if constexpr (kIsFloat)
       return r.drive_velocity > 0 ? r.drive_velocity : 0;

@@ -1,4 +1,4 @@
-// Takes faults over from the axes into the log, and counts the time that the board runs.
+// Copies faults from the axes into the log, and counts the board's running time.
 #pragma once
 
 #include <algorithm>
@@ -24,23 +24,23 @@ class FaultLogService {
     written_s_ = run_s_ = log_.run_s();
   }
 
-  /// After start(): how the run before this one ended.
+  /// Call it after start(): logs how the previous run ended.
   void note(LoggedFault ended) {
     ended.run_s = run_s_;
     if (waiting_ < kMostWaiting) queue_[waiting_++] = ended;
   }
 
-  /// Often. `periods`: of control so far, `rate` of them a second; `velocity_of(axis, scalar)`: rad/s (m/s).
+  /// Call it often. `periods`: control periods so far, `rate` per second; `velocity_of(axis, scalar)`: rad/s (m/s).
   template <typename VelocityOf>
   void look(const Axes& axes, std::uint32_t periods, std::uint32_t rate, VelocityOf velocity_of) {
     for (; periods - counted_periods_ >= rate; counted_periods_ += rate) ++run_s_;
     for (std::size_t axis = 0; axis < Axes::kAxes; ++axis)
       if (!is_taken_[axis]) take(axes[axis], axis, velocity_of);
   }
-  /// Faults are about to be cleared, and have been looked at: the next ones are others.
+  /// Call it before faults are cleared, after they have been copied: later faults are new ones.
   void forget() { is_taken_ = {}; }
 
-  /// To be done while no axis is on.
+  /// Writes entries; only while no axis is enabled.
   bool wants_flash() const { return waiting_ != 0 || run_s_ - written_s_ >= kTimeEvery_s; }
   bool write() {
     LoggedFault entry;
@@ -85,7 +85,7 @@ class FaultLogService {
       entry.dac_code = static_cast<std::int16_t>(std::clamp<std::int32_t>(last.dac_code, Code::min(), Code::max()));
       return last.estimate.velocity;
     }();
-    if (!is_taken_[index] || axis.fault() == AxisFault::other_axis_stopped) return;  // the other has a line of its own
+    if (!is_taken_[index] || axis.fault() == AxisFault::other_axis_stopped) return;  // the other fault has its own line
     entry.axis = static_cast<std::uint8_t>(index);
     entry.run_s = run_s_;
     entry.velocity = velocity_of(index, velocity);

@@ -1,4 +1,4 @@
-// What an image says about itself, 512 bytes after its start: who it is for, what it is, and whether it is whole.
+// Header of an image, 512 bytes after its start: board and chip, version, and a checksum.
 #pragma once
 
 #include <array>
@@ -29,10 +29,10 @@ static_assert(sizeof(ImageHeader) == 80 && std::is_trivially_copyable_v<ImageHea
 
 inline constexpr std::uint32_t kImageMagic = 0x53495841;  // "AXIS"
 inline constexpr std::uint16_t kImageLayout =
-    2;  ///< runs behind boot code, where a board has one (1: at the start of flash)
+    2;  ///< runs after boot code, if a board has one (1: at the start of flash)
 inline constexpr std::size_t kImageHeaderOffset = 512;  // the vector table of the STM32F405 has 392 bytes
 
-/// Where a board has boot code, programs lie this far behind the start of flash: sector 0 of the STM32F405.
+/// On a board with boot code, programs begin at this offset in flash: after sector 0 of the STM32F405.
 inline constexpr std::size_t kBootCodeSize = 16 * 1024;
 
 enum class ImageState : std::uint8_t { whole, no_header, wrong_size, wrong_crc };

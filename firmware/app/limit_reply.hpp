@@ -1,4 +1,4 @@
-// What a motion is refused with: the parameter that limits it, and its value.
+// The parameter that limits a refused motion, and its value.
 #pragma once
 
 #include "firmware/app/parameters/parameter_check.hpp"
@@ -14,7 +14,7 @@ constexpr RefusedValuePayload limit_reply(const ParameterValues& values, std::si
           .bits = std::bit_cast<std::uint32_t>(static_cast<float>(values.axis(axis).template get<name>()))};
 }
 
-/// Of the velocity limit, what an axis may have that does not know where it is: parts of kWholeVelocity.
+/// Allowed share of the velocity limit for an axis that is not homed, in parts of kWholeVelocity.
 constexpr std::int32_t unhomed_share(const AxisValues& v) {
   const float most = v.get<"limits.unhomed_velocity">(), usual = v.get<"limits.velocity">();
   if (!(most > 0 && most < usual)) return kWholeVelocity;
@@ -26,7 +26,7 @@ constexpr bool exceeds_unhomed_limit(float velocity, const AxisValues& v) {
   return most > 0 && (velocity > most || velocity < -most);
 }
 
-/// An axis that is not fitted has no thresholds of a design; these are its own, whatever the request's box is.
+/// An axis that is not fitted has no thresholds from a design. These limits apply to it, whatever the request's box is.
 constexpr bool exceeds_unfitted_limits(const ExcitationRequest& r, const ParameterValues& values,
                                        RefusedValuePayload& refused) {
   const AxisValues v = values.axis(r.axis);

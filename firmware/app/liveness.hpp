@@ -1,12 +1,12 @@
-// Decides whether the watchdog may be fed: only when all that must run has run.
+// Decides whether the watchdog may be fed: only if both the control interrupt and the supervisor have run.
 #pragma once
 
 #include <cstdint>
 
 namespace firmware {
 
-/// The control interrupt and the supervisor each report; the background loop asks. A single writer for each counter, so
-/// nothing needs a lock.
+/// The control interrupt and the supervisor report; the background loop reads. Each counter has a single writer, so no
+/// lock is needed.
 class Liveness {
  public:
   void control_ran() { control_periods_ = control_periods_ + 1; }
@@ -20,7 +20,8 @@ class Liveness {
     return true;
   }
 
-  /// For the control interrupt: the supervisor has reported within its last kMostPeriods periods. Ask once a period.
+  /// For the control interrupt: whether the supervisor has reported within the last kMostPeriods periods. Call it once
+  /// a period.
   bool supervisor_ran_lately() {
     if (supervisor_rounds_ != seen_round_) {
       seen_round_ = supervisor_rounds_;
@@ -33,13 +34,13 @@ class Liveness {
   std::uint32_t supervisor_rounds() const { return supervisor_rounds_; }
 
  private:
-  static constexpr std::uint32_t kMostPeriods = 200;  ///< 10 ms at 20 kHz, where a round of the background takes 1 ms
+  static constexpr std::uint32_t kMostPeriods = 200;  ///< 10 ms at 20 kHz; a round of the background takes 1 ms there
 
   volatile std::uint32_t control_periods_ = 0;    // written in the interrupt, read in the background
   volatile std::uint32_t supervisor_rounds_ = 0;  // written in the background, read in the interrupt
   std::uint32_t fed_at_period_ = 0;
   std::uint32_t fed_at_round_ = 0;
-  std::uint32_t seen_round_ = 0;  // the interrupt's own
+  std::uint32_t seen_round_ = 0;  // used by the interrupt only
   std::uint32_t seen_at_period_ = 0;
 };
 

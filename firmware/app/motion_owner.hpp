@@ -1,15 +1,16 @@
-// Whose motion and whose capture it is: the client that commanded it, and nobody else, keeps it alive.
+// Ownership of motion and captures: only the client that commanded a motion keeps it alive.
 #pragma once
 
 #include <cstdint>
 
 namespace firmware {
 
-/// What a client chose for itself and writes into each of its requests: the lower 16 bits come back in replies, which
-/// everybody sees; the 8 above them, its pass, never do. protocol/README.md.
+/// Identification that a client chooses and writes into each of its requests. Replies repeat the lower 16 bits, which
+/// every client sees, but never the 8 bits above them, its pass. See protocol/README.md.
 using ClientToken = std::uint32_t;
 
-/// Background only. While an axis moves, only the owner commands; an axis at rest belongs to whoever commands it next.
+/// Background only. While an axis moves, only the owner may command; an axis at rest belongs to whoever commands it
+/// next.
 class MotionOwner {
  public:
   constexpr bool is(ClientToken client) const { return is_known_ && client == client_; }
@@ -26,7 +27,7 @@ class MotionOwner {
   bool is_known_ = false;
 };
 
-/// Something that one client uses while it is heard now and then: a capture. Times are control periods.
+/// A resource (a capture) that belongs to one client as long as its requests arrive. Times are in control periods.
 class ClientClaim {
  public:
   constexpr void take(ClientToken client, std::uint32_t now) {

@@ -1,4 +1,4 @@
-// Paths as the host asks for them.
+// Carries out the host's requests for paths.
 #pragma once
 
 #include <cstring>
@@ -27,14 +27,14 @@ class PathService {
 
   bool is_moving() const { return follower_.is_moving(); }
   bool is_open() const { return follower_.is_open(); }
-  /// Nodes, start and rate are those of the client that opened it, or took it over in motion.
+  /// Nodes, start and rate are accepted only from the client that opened the path, or took it over in motion.
   bool is_others(ClientToken client) const { return is_open() && client != client_; }
   void take_over(ClientToken client) {
     if (is_moving()) client_ = client;
   }
   bool leads(std::size_t axis) const { return follower_.is_open() && follower_.is_led(axis); }
 
-  /// The axes of the mask are enabled and stand. `contact`: how the probe is wired.
+  /// The axes of the mask must be enabled and at rest. `contact`: how the probe is wired.
   Status open(const OpenPathRequest& request, ClientToken client, ProbeContact contact, OpenPathPayload& opened) {
     if (request.node_format != kPathNodeFormat) return Status::wrong_version;
     if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units) ||
@@ -66,7 +66,7 @@ class PathService {
     return Status::ok;
   }
 
-  /// Whole nodes as they came; those before one that is refused hold.
+  /// Takes whole nodes in the format of the report; nodes before a refused one are kept.
   Status push(std::span<const std::byte> bytes) {
     if (!follower_.is_open()) return Status::wrong_state;
     const std::size_t size = path_node_size(static_cast<std::size_t>(std::popcount(follower_.mask())));
@@ -128,8 +128,8 @@ class PathService {
     return state;
   }
 
-  /// True where an axis is on its path: then all stop there, and this one is disabled afterwards. A path that has not
-  /// begun ends.
+  /// True if the axis is on its path: then all axes stop on the path, and this one is disabled afterwards. A path that
+  /// has not begun ends.
   bool disables_at_end(std::size_t axis) {
     const ShutOut guard;
     if (!leads(axis)) return false;
@@ -140,7 +140,7 @@ class PathService {
     return true;
   }
 
-  /// The background's own work, once a round.
+  /// Work of the background, once a round.
   void poll() {
     if (follower_.is_open()) follower_.prepare();
     if (follower_.phase() == PathPhase::open) end_without_axes();
@@ -151,7 +151,7 @@ class PathService {
     disabled_at_end_ = 0;
   }
 
-  /// The control interrupt's own, before the axes' steps, while is_moving().
+  /// For the control interrupt, before the axes' steps, while is_moving().
   [[gnu::noinline]] void before_step() {
     if (axes_.board().is_host_lost()) follower_.stop(PathEnd::host_lost);
     follower_.before_step(axes_);
@@ -159,7 +159,7 @@ class PathService {
   }
 
  private:
-  /// What was loaded for enabled axes does not outlive their enables.
+  /// Nodes that were loaded for enabled axes are discarded when their enables drop.
   void end_without_axes() {
     const ShutOut guard;
     for (std::size_t i = 0; i < kAxes; ++i)

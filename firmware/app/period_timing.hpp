@@ -1,4 +1,4 @@
-// How regularly the control periods come, and how long they take.
+// Measures the interval and the duration of control periods.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace firmware {
 
-/// Control interrupt; the background while that is shut out.
+/// For the control interrupt, or for the background while that is disabled.
 class PeriodTiming {
  public:
   void note(std::uint32_t began_us, std::uint32_t ended_us) {

@@ -1,4 +1,5 @@
-// The touch probe while axes move: what looks for it ends where it is met, and so does any motion that hits something.
+// The touch probe while axes move: a probing motion ends at the probe's edge, and any other motion ends at an
+// unexpected contact.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@ inline ProbeContact probe_contact(const ParameterValues& values) {
   return static_cast<ProbeContact>(values.get<"probe.input">());
 }
 
-/// A motion begins while the control interrupt is shut out; that interrupt calls watch(). `Group`: an AxisGroup on a
+/// Motions begin while the control interrupt is disabled; that interrupt calls watch(). `Group`: an AxisGroup on a
 /// hal::Board.
 template <typename Group, typename Board>
 class ProbeService {
@@ -27,7 +28,7 @@ class ProbeService {
 
   ProbeService(Group& axes, Board& board) : axes_(axes), board_(board) {}
 
-  /// A path begins. False, and nothing changes, where it looks for what is there already.
+  /// A path begins. Returns false, without any change, if the probe is already in the state that the path looks for.
   bool begin([[maybe_unused]] ProbeContact contact, [[maybe_unused]] ProbeStop stop) {
     if constexpr (kIsThere) {
       std::int32_t samples = 0;
@@ -43,7 +44,7 @@ class ProbeService {
     return true;
   }
 
-  /// Any other motion begins. False while axes still slow down from what they hit.
+  /// Any other motion begins. Returns false while axes still slow down after a contact.
   bool begin_motion(ProbeContact contact) {
     if (is_watching_) return true;
     return !(is_met_ && axes_.is_in_motion()) && begin(contact, ProbeStop::none);
@@ -51,8 +52,8 @@ class ProbeService {
 
   bool is_watching() const { return is_watching_; }
 
-  /// Before the axes' steps, while is_watching(): all that moves stops, on its way. Where a path ends before the input
-  /// has said so for long enough, the latch decides.
+  /// Call it before the axes' steps, while is_watching(): stops all motion on its path. If a path ends before the input
+  /// has been in its state for long enough, the latch decides.
   template <typename Path>
   [[gnu::noinline, gnu::cold]] void watch(Path& path) {
     if constexpr (kIsThere) {
@@ -101,8 +102,8 @@ class ProbeService {
   Board& board_;
   ProbeWatch watch_;
   bool is_watching_ = false;
-  bool is_met_ = false;                              ///< what the newest motion watched for
-  bool is_latched_ = false;                          ///< the hardware latched where
+  bool is_met_ = false;                              ///< the latest motion reached the state that it watched for
+  bool is_latched_ = false;                          ///< the hardware latched the position
   std::array<std::int64_t, Group::kAxes> met_at_{};  ///< counts
 };
 

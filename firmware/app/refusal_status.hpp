@@ -1,4 +1,4 @@
-// What the core's and the store's refusals are on the wire.
+// Maps refusals of core and store to statuses of replies.
 #pragma once
 
 #include "firmware/app/protocol/messages.hpp"
@@ -7,7 +7,7 @@
 
 namespace firmware {
 
-/// Of a move or a node; a refused parameter has words of its own (RefusedValuePayload).
+/// For a move or a node; a refused parameter has its own payload (RefusedValuePayload).
 constexpr Status status_of(Refusal refusal) {
   switch (refusal) {
     case Refusal::none:

@@ -11,22 +11,22 @@
 
 namespace firmware {
 
-/// What a capture leaves beside its rows. A board may lay both where a reset does not reach; then the last one can be
-/// read afterwards.
+/// State of a capture in addition to its rows. If a board puts both into memory that survives a reset, the last capture
+/// can be read afterwards.
 struct TriggeredState {
   std::uint32_t magic;
   std::uint32_t crc;  ///< of the request
   TriggerRequest request;
   TriggerPhase phase;
   std::uint32_t half_words;  ///< room for rows
-  std::uint32_t next;        ///< row of the ring that comes next
+  std::uint32_t next;        ///< next row of the ring
   std::uint32_t taken;       ///< rows since it was armed; stays at the ring's size
   std::uint32_t trigger;     ///< row of the ring
   std::uint32_t after;       ///< rows taken from the trigger on
-  std::int64_t counts;       ///< of the axis when the trigger came
+  std::int64_t counts;       ///< of the axis at the trigger
 };
 
-/// With the least room: 100 ms of four channels at 20 kHz. A board has as much as it has RAM.
+/// Smallest memory: 100 ms of four channels at 20 kHz. A board may use more of its RAM.
 struct TriggeredMemory : TriggeredState {
   static constexpr std::size_t kHalfWords = 8000;
   std::array<std::uint16_t, kHalfWords> half_word;
@@ -36,7 +36,7 @@ static_assert(std::is_trivial_v<TriggeredMemory>);
 /// take() belongs to the control interrupt, the rest to the background.
 class TriggeredCapture {
  public:
-  /// Keeps what it finds, if that is a capture whose trigger came.
+  /// Keeps the memory's contents if they are a capture whose trigger has occurred.
   void adopt(TriggeredState& memory, std::span<std::uint16_t> rows) {
     memory_ = &memory;
     rows_ = rows;
@@ -64,7 +64,7 @@ class TriggeredCapture {
     return r.after <= most && r.before <= most - r.after;
   }
 
-  /// While the control interrupt is shut out; `request` is possible.
+  /// Call it while the control interrupt is disabled; `request` must be possible.
   void arm(const TriggerRequest& request) {
     TriggeredState& m = *memory_;
     m.request = request;
@@ -76,7 +76,7 @@ class TriggeredCapture {
     m.counts = 0;
     until_next_ = 1;
     holdoff_ = request.holdoff;
-    was_so_ = true;  // a passage needs a sample on the near side first
+    was_so_ = true;  // passing the level needs a sample on the near side first
     survived_ = false;
     m.phase = TriggerPhase::waiting;
   }
@@ -126,7 +126,7 @@ class TriggeredCapture {
     return state;
   }
 
-  /// False beyond the end, and while rows still come.
+  /// False beyond the end, and while rows are still being recorded.
   bool read(std::uint32_t first, TriggeredPayload& payload) const {
     const TriggeredState& m = *memory_;
     if (m.phase != TriggerPhase::complete) return false;
@@ -216,7 +216,7 @@ class TriggeredCapture {
       const auto value = std::bit_cast<float>(word), level = std::bit_cast<float>(r.level);
       return r.falling != 0 ? value < level : value > level;
     }
-    // Low words: the shorter way round.
+    // Difference of low words, modulo their range.
     const auto distance = static_cast<std::int32_t>(word - r.level);
     return r.falling != 0 ? distance < 0 : distance > 0;
   }

@@ -82,7 +82,7 @@ class Axis {
     return true;
   }
 
-  /// Only the enable line, for an amplifier that needs time: the loop stays open, at 0 V.
+  /// Sets only the enable line, for an amplifier that needs time: the loop stays open, at 0 V.
   constexpr void energise() { hal_.drive_enable().set(true); }
 
   /// Opens the loop at once: 0 V, enable line off.

@@ -47,7 +47,7 @@ enum class ValueRefusal : std::uint8_t {
 };
 
 constexpr ValueRefusal check_value(const ParameterRule& rule, float value) {
-  // By the bits, before any comparison: an infinity or not-a-number must not reach one.
+  // Checks the bits before any comparison, which an infinity or not-a-number must not reach.
   constexpr std::uint32_t kExponent = 0x7F800000;
   if ((std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent) return ValueRefusal::not_a_number;
   if (value < rule.minimum) return ValueRefusal::below_minimum;

@@ -11,7 +11,7 @@ namespace hal::cortex_m {
 
 #ifdef AXIS_REGISTERS_ANSWERED
 
-/// The test's. `size` in bytes.
+/// Defined by the test. `size` in bytes.
 std::uint32_t answer_read(std::uintptr_t address, std::size_t size);
 void answer_write(std::uintptr_t address, std::size_t size, std::uint32_t value);
 

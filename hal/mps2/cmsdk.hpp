@@ -40,7 +40,7 @@ class UartPort {
 };
 static_assert(SerialLine<UartPort>);
 
-/// APB watchdog, section 4.6: its first time-out asks for an interrupt, its second resets.
+/// APB watchdog, section 4.6: its first time-out requests an interrupt, its second resets.
 class Watchdog {
  public:
   /// Resets after twice `ticks` of the 25 MHz clock without feeding.

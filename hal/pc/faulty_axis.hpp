@@ -27,8 +27,8 @@ struct AxisDefects {
   bool unready = false;          ///< the amplifier's ready contact or its wire is open
   bool ready_stuck = false;      ///< that contact is welded
   bool enable_open = false;      ///< the amplifier does not see its enable
-  bool enable_stuck = false;     ///< it sees one always; only its power can be cut
-  bool amplifier_stuck = false;  ///< it gives the current of amplifier_stuck_code, without an enable too
+  bool enable_stuck = false;     ///< it always sees an enable; only its power can be cut
+  bool amplifier_stuck = false;  ///< it gives the current of amplifier_stuck_code, even without an enable
   std::int32_t amplifier_stuck_code = 0;
   bool brake_stuck = false;           ///< it does not release
   std::int32_t amplifier_offset = 0;  ///< codes that it adds to its command while it drives
@@ -95,7 +95,7 @@ class FaultyAxis {
     }
     bool is_healthy() const { return !axis_.defects.dac_unhealthy; }
     std::int32_t commanded() const { return commanded_; }
-    /// What the amplifier makes of it, codes.
+    /// The command on which the amplifier acts, codes.
     std::int32_t put_out() const { return put_out_; }
 
    private:
@@ -120,7 +120,7 @@ class FaultyAxis {
       apply();
     }
     bool is_on() const { return is_on_; }
-    /// The amplifier gives current.
+    /// Whether the amplifier gives current.
     bool drives() const {
       const AxisDefects& d = axis_.defects;
       const bool sees_enable = (is_on_ && !d.enable_open) || d.enable_stuck || d.amplifier_stuck;
@@ -159,7 +159,7 @@ class FaultyAxis {
   Enable& drive_enable() { return enable_; }
   Limits& limits() { return limits_; }
 
-  /// The amplifier drives by its enable, or a current without one acts on the axis.
+  /// The amplifier drives because of its enable, or a current without an enable acts on the axis.
   bool is_driven() const { return enable_.drives() && (enable_.is_on() || dac_.put_out() != 0); }
 
   /// The amplifier's supply, or the stop relay's contact in its enable line.
@@ -180,9 +180,9 @@ class FaultyAxis {
   }
 
  private:
-  /// Something slips for a few milliseconds, then nothing moves.
+  /// The axis slips for a few milliseconds, then stands.
   void block(double x, double w, double duration_s) {
-    constexpr double kLeft = 0.6, kStanding = 0.01;  // of the speed a period later; rad/s (m/s)
+    constexpr double kLeft = 0.6, kStanding = 0.01;  // share of the speed after a period; rad/s (m/s)
     const double slowed = std::abs(w) < kStanding ? 0.0 : kLeft * w;
     sim::DriveState& truth = plant_.truth();
     truth.w = truth.load_w = slowed;

@@ -15,14 +15,14 @@ namespace hal::pc {
 
 /// Further hardware that is connected to the board.
 struct AxisWiring {
-  /// Tachometer A/D converter, rad/s (m/s) a code: 16 bits over -512..+512 rad/s. Far below the paper's noise of 0.22
-  /// rad/s, so the model's noise variance stays what it says.
+  /// Tachometer A/D converter, rad/s (m/s) a code: 16 bits over -512..+512 rad/s. A code is far below the paper's noise
+  /// of 0.22 rad/s, so it does not change the model's noise variance.
   double tachometer_resolution = 1.0 / 64.0;
   double negative_end = -std::numeric_limits<double>::infinity();  ///< travel at which the switch acts, mm (m)
   double positive_end = std::numeric_limits<double>::infinity();
   double home = std::numeric_limits<double>::quiet_NaN();  ///< home switch: actuated at and beyond it; NaN: none
   double index_spacing = 0.0;  ///< travel from one index pulse to the next, mm (m); 0: none is wired
-  double index_offset = 0.0;   ///< travel at which one of them lies
+  double index_offset = 0.0;   ///< travel at which one of the pulses occurs
   double ready_after_s =
       0.0;  ///< of a FaultyAxis: time from the enable, at which it drives, until the amplifier reports ready
   BrakeWiring brake{};  ///< of a FaultyAxis
@@ -73,7 +73,7 @@ class SimulatedAxis {
       return {static_cast<std::uint32_t>(counts), true, passed < -1 || passed > 1};
     }
 
-    /// A probe's edge came at these counts.
+    /// A probe's edge occurred at these counts.
     void latch(std::int64_t counts) { latched_ = {static_cast<std::uint32_t>(counts), true}; }
     EncoderReading read_latch() {
       const EncoderReading latched = latched_;

@@ -24,11 +24,11 @@ class SimulatedBoardOf {
   using Drives = std::array<sim::DriveDescription, axes>;
   using Wiring = std::array<AxisWiring, axes>;
   struct ControlShutOut {
-    // Program and control period take turns in one thread.
+    // Program and control period alternate in one thread.
     ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
-  /// As many reports as TinyUSB's port queues, and the F405's four sectors; of these only as much as a set can need.
+  /// Queues as many reports as TinyUSB's port, and has the F405's four sectors, but only as large as a set can need.
   /// Axis n has the noise of seed + n.
   SimulatedBoardOf(const Drives& drives, std::uint64_t seed, const Wiring& wiring = {})
       : plants_(make_plants(drives, seed, std::make_index_sequence<axes>())),
@@ -52,12 +52,12 @@ class SimulatedBoardOf {
   void end_stall() {}
   void restart() { wants_restart_ = true; }
 
-  // The environment's side.
+  // Functions for the simulated environment.
   std::uint32_t control_period_us() const { return control_period_us_; }
   bool wants_restart() const { return wants_restart_; }
   sim::Plant& plant(std::size_t index) { return plants_[index]; }
 
-  /// What the probe touches.
+  /// The walls that the probe can touch.
   void put_surfaces(std::vector<SimulatedSurface> surfaces) { surfaces_ = std::move(surfaces); }
   /// The probe's contact closes or opens now.
   void touch(bool closed) {
@@ -80,7 +80,8 @@ class SimulatedBoardOf {
   }
 
  private:
-  /// With the probe's edge where the motion meets the surface, on a straight line through so short a time.
+  /// The probe's edge occurs where the motion meets the surface; the motion is taken as a straight line within this
+  /// short time.
   void advance_probe(double duration_s) {
     std::array<double, axes> from{}, scale_from{};
     for (std::size_t i = 0; i < axes; ++i) {

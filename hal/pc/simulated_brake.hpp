@@ -13,7 +13,7 @@ struct BrakeWiring {
   double apply_time_s = 0.05;    ///< from the current off until it holds
 };
 
-/// Applied at first, and for long. All of its torque acts or none.
+/// Initially applied, for a long time already. Either its whole torque acts or none.
 class SimulatedBrake {
  public:
   SimulatedBrake(sim::Plant& plant, const BrakeWiring& wiring)

@@ -12,10 +12,10 @@
 
 namespace hal::pc {
 
-/// Thrown by the operation during which power goes. Not an error of the program: nothing but a test catches it.
+/// Thrown by the operation during which power fails. Not an error of the program: only a test catches it.
 struct PowerCut {};
 
-/// What the cut operation leaves of its word (program) or its sector (erase).
+/// State in which an interrupted operation leaves its word (program) or its sector (erase).
 enum class TornState : std::uint8_t {
   untouched,  ///< as it was before
   complete,   ///< as it should have become
@@ -27,7 +27,8 @@ inline constexpr TornState kTornStates[] = {TornState::untouched, TornState::com
 
 class SimulatedFlash {
  public:
-  /// All erased. `program_size` divides `sector_size`; so does `erase_parts`, into as many as are erased one by one.
+  /// Initially erased. `program_size` divides `sector_size`, and so does `erase_parts`, the number of parts of a sector
+  /// that are erased one by one.
   SimulatedFlash(std::size_t sector_count, std::size_t sector_size, std::size_t program_size,
                  std::size_t erase_parts = 1)
       : sectors_(sector_count, std::vector<std::byte>(sector_size, kErased)),
@@ -68,7 +69,8 @@ class SimulatedFlash {
     return FlashResult::ok;
   }
 
-  /// Power goes during the operation after `operations` more: one erase of a sector's part, or one unit programmed.
+  /// Power fails during the operation after the next `operations`, each an erase of a sector's part or one programmed
+  /// unit.
   void cut_power_after(std::size_t operations, TornState torn, std::uint32_t seed) {
     cut_ = Cut{operations_ + operations, torn, seed};
   }
@@ -77,7 +79,7 @@ class SimulatedFlash {
   /// Erases and programmed units so far.
   std::size_t operations() const { return operations_; }
 
-  /// All of it, sector after sector: to keep in a file, and to spoil on purpose.
+  /// Its whole contents, sector after sector, to be stored in a file or deliberately damaged.
   std::vector<std::vector<std::byte>>& contents() { return sectors_; }
 
  private:

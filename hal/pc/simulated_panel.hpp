@@ -68,7 +68,7 @@ class SimulatedProbe {
   }
   bool has_latched() const { return has_latched_; }
 
-  /// True where this edge latches.
+  /// True if this edge latches.
   bool turn(bool closed) {
     const bool latches = closed != is_closed_ && armed_for_ == closed && !has_latched_;
     is_closed_ = closed;

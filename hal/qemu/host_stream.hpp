@@ -1,5 +1,5 @@
-// A byte stream between the emulated processor and a program beside the emulator. QEMU's serial ports take in one byte
-// at a time, each of which has to wait for the emulator's other work; files take any number at once.
+// A byte stream between the emulated processor and a program beside the emulator. QEMU's serial ports receive one byte
+// at a time, and each byte waits for the emulator's other work; files transfer any number at once.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ class HostStream {
     leaving_count_ = 0;
   }
 
-  /// In an interrupt: takes in what has arrived once all before it has been received.
+  /// For an interrupt: reads newly arrived bytes once all earlier ones have been received.
   void fetch() {
     if (next_ != arrived_count_) return;
     next_ = 0;

@@ -1,4 +1,4 @@
-// Requests that the emulator answers for the program: Arm semihosting (Semihosting for AArch32 and AArch64, release 2).
+// Requests of the program to the emulator: Arm semihosting (Semihosting for AArch32 and AArch64, release 2).
 #pragma once
 
 #include <cstddef>
@@ -60,7 +60,7 @@ class HostFile {
 
   /// Waits for all bytes; false at the end of the file or on an error.
   bool read(std::span<std::byte> bytes) const { return transfer(Semihosting::read, bytes.data(), bytes.size()); }
-  /// Takes what there is; the number of bytes.
+  /// Reads the available bytes; returns their number.
   std::size_t read_some(std::span<std::byte> bytes) const {
     const std::size_t left = ask(Semihosting::read, bytes.data(), bytes.size());
     return left < bytes.size() ? bytes.size() - left : 0;
@@ -69,7 +69,7 @@ class HostFile {
     return transfer(Semihosting::write, bytes.data(), bytes.size());
   }
 
-  /// Of a file, not of a FIFO.
+  /// For a file, not for a FIFO.
   bool skip_to_end() const {
     const std::int32_t length = semihosting(Semihosting::file_length, &handle_);
     const std::int32_t block[2] = {handle_, length};

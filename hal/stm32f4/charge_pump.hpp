@@ -1,5 +1,5 @@
-// A square wave that shows that control is alive: an external charge pump turns it into the supply of the enables, so
-// that a processor that hangs, at either level, disables the drives.
+// A square wave that shows that the control works. An external charge pump makes the supply of the enables from it, so
+// a processor that hangs, with the pin at either level, disables the drives.
 #pragma once
 
 #include "hal/stm32f4/pin.hpp"

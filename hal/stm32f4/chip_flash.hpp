@@ -33,8 +33,8 @@ struct ImageSectors {
   static constexpr std::uint32_t count_of_chip(std::size_t sector) { return sector == 0 ? 4 : 1; }
 };
 
-/// Programs words; erasing a sector of 128 KB takes 1 to 2 s and stalls every access to flash, interrupts included: the
-/// watchdog must allow for it, the drives must be off.
+/// Programs words. Erasing a sector of 128 KB takes 1 to 2 s and stalls every access to flash, interrupts included:
+/// meanwhile the drives must be off, and the watchdog must allow for the time.
 template <typename Map>
 class ChipFlash {
  public:
@@ -82,7 +82,7 @@ class ChipFlash {
     registers_.CR = registers_.CR | FlashInterface::kStart;
     const FlashResult result = finish();
     registers_.CR = FlashInterface::kLock;
-    registers_.ACR = registers_.ACR & ~FlashInterface::kDataCache;  // the cache still holds what was erased (3.5.2)
+    registers_.ACR = registers_.ACR & ~FlashInterface::kDataCache;  // the cache still holds the erased data (3.5.2)
     registers_.ACR = registers_.ACR | FlashInterface::kDataCacheReset;
     registers_.ACR = (registers_.ACR & ~FlashInterface::kDataCacheReset) | FlashInterface::kDataCache;
     return result;
@@ -109,7 +109,7 @@ class ChipFlash {
     return finish();
   }
 
-  /// 2 s for an erase at most (datasheet, table 40): some 10^8 polls at 168 MHz are more.
+  /// An erase takes at most 2 s (datasheet, table 40); some 10^8 polls at 168 MHz take longer.
   FlashResult finish() {
     for (std::uint32_t poll = 0; poll < 100'000'000 && (registers_.SR & FlashInterface::kBusy) != 0; ++poll) continue;
     const bool bad = (registers_.SR & (FlashInterface::kErrors | FlashInterface::kBusy)) != 0;

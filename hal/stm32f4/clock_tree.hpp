@@ -61,7 +61,7 @@ inline bool start_clocks(Rcc& rcc, Power& power, FlashInterface& flash) {
   rcc.CFGR = Rcc::kApb1By4 | Rcc::kApb2By2;
   rcc.CFGR = rcc.CFGR | Rcc::kSwitchToPll;
   if (!wait_for(rcc.CFGR, Rcc::kSwitchedMask, Rcc::kSwitchedToPll)) return false;
-  rcc.CR = rcc.CR | Rcc::kClockSecurity;  // a crystal that dies later raises the non-maskable interrupt
+  rcc.CR = rcc.CR | Rcc::kClockSecurity;  // if the crystal stops later, this raises the non-maskable interrupt
   return true;
 }
 

@@ -17,8 +17,8 @@ class ControlTimer {
     timer_.CR1 = Timer::kEnable;
   }
 
-  /// 250 Hz to 20 kHz; from now on, also while it runs. A count beyond the new end would run on to 65535, so that the
-  /// counter begins anew; that alone triggers nothing.
+  /// 250 Hz to 20 kHz; takes effect at once, also while it runs. A count beyond the new end would run on to 65535, so
+  /// the counter is reset; the reset alone does not trigger.
   void set_rate(std::uint32_t rate_Hz) {
     timer_.CR2 = 0;
     timer_.ARR = ticks_Hz_ / rate_Hz - 1;

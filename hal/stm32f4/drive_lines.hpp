@@ -11,9 +11,9 @@
 namespace hal::stm32f4 {
 
 /// Enable: high lets the amplifier drive, through the contact of the emergency-stop relay. Fault: the amplifier's
-/// contact pulls low while all is well, so an open wire reads as a fault. Ready: its contact pulls low once it drives.
+/// contact pulls low without a fault, so an open wire reads as a fault. Ready: its contact pulls low once it drives.
 /// Brake: high releases it. Dynamic brake: low shorts the motor, or is the amplifier's own input for it; it is released
-/// before the enable goes on and applied after it has gone off.
+/// before the enable is set and applied after it has dropped.
 class DriveLines {
  public:
   struct Pins {
@@ -74,7 +74,7 @@ class StopInput {
 };
 static_assert(EmergencyStop<StopInput>);
 
-/// High closes the relay that gives the amplifiers their power.
+/// High closes the relay in the amplifiers' power.
 class RelayOutput {
  public:
   explicit RelayOutput(Pin pin) : pin_(pin) {}

@@ -11,7 +11,7 @@ class Pin {
  public:
   constexpr Pin(Gpio& port, std::uint32_t number) : port_(port), number_(number) {}
 
-  /// Push-pull, at `level` from its first moment on.
+  /// Push-pull, with `level` from the beginning.
   void make_output(bool level) const {
     set(level);
     write_field(port_.MODER, 1);

@@ -23,8 +23,8 @@ class SpiPort {
     return transfer(word, ignored);
   }
 
-  /// The same at 84 MHz / 8 = 10.5 MHz, with what the other end sends meanwhile: its answer may take most of half a
-  /// clock (48 ns) to reach the line. Slower would hold the control interrupt up for longer.
+  /// The same at 84 MHz / 8 = 10.5 MHz, and returns the received word. The other end's answer may take most of half a
+  /// clock (48 ns) to reach the line. A slower clock would delay the control interrupt longer.
   bool exchange24(std::uint32_t word, std::uint32_t& reply) {
     registers_.CR1 = kReceiving;  // the rate changes while the port is off (28.3.3)
     registers_.CR1 = kReceiving | Spi::kEnable;
@@ -34,7 +34,7 @@ class SpiPort {
     return sent;
   }
 
-  /// At least so long: a read over the peripheral bus takes two of its clocks, 24 ns, or more.
+  /// Waits at least this long: a read over the peripheral bus takes at least two of its clocks, 24 ns.
   void pause_ns(std::uint32_t time_ns) {
     for (std::uint32_t passed = 0; passed < time_ns; passed += kRead_ns)
       static_cast<void>(static_cast<std::uint32_t>(registers_.SR));

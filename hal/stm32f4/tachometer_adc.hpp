@@ -19,7 +19,7 @@ class TachometerChannel {
  public:
   TachometerChannel(const TachometerSamples& samples, std::uint32_t channel) : samples_(samples), channel_(channel) {}
 
-  /// Called by the control interrupt, which the end of the DMA transfer starts: the samples are this period's.
+  /// Called by the control interrupt, which the end of the DMA transfer starts, so the samples belong to this period.
   void conversions_have_arrived() { is_new_ = true; }
 
   TachometerReading read() {
@@ -65,8 +65,9 @@ class TachometerScan {
   /// In the control interrupt.
   void acknowledge() { dma_.LIFCR = Dma::kStream0All; }
 
-  /// In the converter's interrupt: a conversion found its predecessor unread. Requests and triggers are ignored until
-  /// transfer and converter begin anew (13.8.1); otherwise no control interrupt would ever come again.
+  /// For the converter's interrupt: an overrun, because a conversion was not read in time. Restarts transfer and
+  /// converter, since requests and triggers are ignored until then (13.8.1) and no further control interrupt would
+  /// occur.
   void recover_from_overrun() {
     if ((adc_.SR & Adc::kOverrun) == 0) return;
     overruns_ = overruns_ + 1;

@@ -9,13 +9,13 @@
 
 namespace hal::stm32f4 {
 
-/// A computer's supply, behind a divider. The controller's own input for it, PA9, is the service port's.
+/// A computer's supply, behind a divider. The service port uses PA9, the controller's own input for it.
 class VbusInput {
  public:
   explicit constexpr VbusInput(Pin pin) : pin_(pin) {}
   void start() { pin_.make_input(Pull::down); }
-  /// Beside a servo amplifier single readings lie: it changes once it has read otherwise for `steady` of the units of
-  /// `now`, without a break.
+  /// Filters noise of servo amplifiers: the state changes once the input has differed from it for `steady` units of
+  /// `now` without interruption.
   bool is_present(std::uint32_t now, std::uint32_t steady) {
     const bool reads = pin_.read();
     if (reads == is_present_)
@@ -31,8 +31,8 @@ class VbusInput {
   std::uint32_t agreed_at_ = 0;
 };
 
-/// Clock on. The controller takes VBUS for present at all times; whether it pulls D+ up is then decided by who asks
-/// VbusInput: a device must not feed the bus of a host that is off (USB 2.0, 7.1.5).
+/// Switches the clock on. The controller always assumes that VBUS is present; the user of VbusInput decides whether it
+/// pulls D+ up, because a device must not supply the bus of a host that is off (USB 2.0, 7.1.5).
 inline void power_usb_controller(Rcc& rcc, OtgFsGlobal& controller) {
   rcc.AHB2ENR = rcc.AHB2ENR | Rcc::kOtgFs;
   controller.GCCFG = controller.GCCFG | OtgFsGlobal::kNoVbusSensing;

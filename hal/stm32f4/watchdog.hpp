@@ -1,4 +1,4 @@
-// The two watchdogs: nothing but a reset stops them.
+// The two watchdogs; only a reset stops them.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,15 @@ class Watchdog {
     allow(timeout_ms);
   }
 
-  /// Another time-out from now on, also while it runs: for work that is known to stall the processor.
+  /// Changes the time-out, also while it runs: for work that stalls the processor.
   void allow(std::uint32_t timeout_ms) {
     constexpr std::uint32_t kBy16 = 2, kBy256 = 6, kMostTicks = 0xFFF;
     const bool is_long = timeout_ms * 2 > kMostTicks;  // 32 kHz / 16 are 2 ticks a millisecond, / 256 an eighth
     registers_.KR = IndependentWatchdog::kUnlock;
     registers_.PR = is_long ? kBy256 : kBy16;
     registers_.RLR = std::min(is_long ? timeout_ms / 8 : timeout_ms * 2, kMostTicks);
-    // A new value counts once it has crossed into the oscillator's domain: within five of its cycles (21.4.4), 0.3 ms.
+    // A new value takes effect once it has reached the oscillator's clock domain: within five of its cycles (21.4.4),
+    // 0.3 ms.
     for (std::uint32_t poll = 0; poll < 50'000 && registers_.SR != 0; ++poll) continue;
     feed();
   }
@@ -36,15 +37,14 @@ class Watchdog {
   IndependentWatchdog& registers_;
 };
 
-/// Runs on the bus clock, and wants food neither too late nor too early: finds a control interrupt that comes at a
-/// wrong rate. RM0090, chapter 22.
+/// Runs on the bus clock and must be fed neither too late nor too early: detects a wrong rate of the control interrupt.
+/// RM0090, chapter 22.
 class PeriodWatchdog {
  public:
   explicit constexpr PeriodWatchdog(WindowWatchdog& registers) : registers_(registers) {}
 
-  /// Fed every 16 to 20 ms by a caller who comes every 50 us to 4 ms. A tick is 4096 * 8 clocks, 0.78 ms:
-  /// too early is before 9.4 ms, too late after 30 ms.
-  /// Not while period_passed() may come.
+  /// Fed every 16 to 20 ms, if it is called every 50 us to 4 ms. A tick is 4096 * 8 clocks, 0.78 ms: too early is
+  /// before 9.4 ms, too late after 30 ms. Not while period_passed() may be called.
   void start() {
     registers_.CFR = WindowWatchdog::kBy8 | kEarliest;
     registers_.CR = WindowWatchdog::kRun | kFrom;

@@ -17,7 +17,7 @@ constexpr std::uint16_t kDeviceRelease = 0x0100;  // binary-coded 1.00
 constexpr std::uint16_t kEnglish = 0x0409;
 constexpr std::uint8_t kConfigurationSize = 41;
 constexpr std::uint8_t kSelfPowered = 0xC0;  // USB 2.0, table 9-10: bit 7 is always set
-constexpr std::uint8_t kCurrent_2mA = 50;    // 100 mA: all that a board with its own supply may need while starting
+constexpr std::uint8_t kCurrent_2mA = 50;    // 100 mA: the most that a board with its own supply needs while starting
 constexpr std::uint8_t kInterval_ms = 1;
 
 constexpr std::uint8_t low(std::size_t value) { return static_cast<std::uint8_t>(value & 0xFF); }
@@ -79,7 +79,7 @@ void set_serial_number(std::string_view text) {
 
 }  // namespace hal::tinyusb
 
-// What TinyUSB asks for; null answers with a stall.
+// Called by TinyUSB; null answers with a stall.
 
 extern "C" std::uint8_t const* tud_descriptor_device_cb() { return hal::tinyusb::kDevice.data(); }
 

@@ -25,7 +25,7 @@ inline constexpr std::array kReportDescriptor =
                                  0x91, 0x02,        //   output: data, variable, absolute
                                  0xC0});            // end of collection
 
-/// Before the stack is started; at most hal::kUsbSerialNumberSize ASCII characters, what is beyond is cut off.
+/// Call it before the stack is started; at most hal::kUsbSerialNumberSize ASCII characters, further ones are cut off.
 void set_serial_number(std::string_view text);
 
 }  // namespace hal::tinyusb

@@ -1,6 +1,6 @@
-// The HID function, in the place of TinyUSB's hid_device.c and with its interface (class/hid/hid_device.h). Unlike that
-// it accepts the next report from the host only when there is room for it; until then the endpoint answers NAK, and
-// nothing is lost.
+// The HID function, which replaces TinyUSB's hid_device.c and has its interface (class/hid/hid_device.h). Unlike that
+// file, it accepts the next report from the host only if there is room for it; until then the endpoint answers NAK, and
+// no report is lost.
 #include <tusb.h>
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 #include "hal/tinyusb/report_queue.hpp"
 #include "hal/usb_identity.hpp"
 
-// After tusb.h, on whose types it relies.
+// After tusb.h, whose types it needs.
 #include <device/dcd.h>
 #include <device/usbd_pvt.h>
 
-/// What a request asks for goes to the host. A host that sends data with such a request instead would have them written
-/// over what it asked for, which may be gone or constant: it gets a stall. Every answer of TinyUSB's own takes this way
-/// too (cmake/modules/AxisTinyUsb.cmake), which does not look at the direction.
+/// Answers a request that reads. If the host sends data with such a request, they would overwrite the answer's memory,
+/// which may be invalid or constant, so the request is stalled. TinyUSB's own answers also use this function
+/// (cmake/modules/AxisTinyUsb.cmake), because TinyUSB does not check the direction.
 extern "C" bool give_to_host(std::uint8_t port, const tusb_control_request_t* request, void* data, std::uint16_t size) {
   if (request->bmRequestType_bit.direction == TUSB_DIR_IN || request->wLength == 0)
     return tud_control_xfer(port, request, data, size);
@@ -40,7 +40,7 @@ constexpr std::size_t kQueued = 8;  // reports each way: 8 ms of traffic
 
 struct Function {
   ReportQueue<kQueued> from_host, to_host;
-  HidReport arriving{}, leaving{};  ///< what the controller writes and reads
+  HidReport arriving{}, leaving{};  ///< written and read by the controller
   const std::uint8_t* descriptor = nullptr;
   bool accepts = false;  ///< the OUT endpoint waits for a report
   bool sends = false;    ///< the IN endpoint waits for the host to fetch `leaving`
@@ -62,7 +62,7 @@ void send_next() {
   if (!function.sends && function.to_host.take(function.leaving)) send_leaving();
 }
 
-/// What is shorter than a report is filled up with zeros.
+/// Shorter data are filled up with zeros.
 void take_report(std::size_t size) {
   const auto rest = static_cast<std::ptrdiff_t>(std::min(size, kHidReportSize));
   std::fill(function.arriving.begin() + rest, function.arriving.end(), std::byte{0});
@@ -108,7 +108,7 @@ bool standard_request(std::uint8_t port, const tusb_control_request_t* request) 
 
 bool class_request(std::uint8_t port, const tusb_control_request_t* request) {
   switch (request->bRequest) {
-    case kSetIdle:  // reports are sent when there is news, whatever the host asks: HID 1.11, section 7.2.4
+    case kSetIdle:  // reports are sent when there is new data, whatever the host requests: HID 1.11, section 7.2.4
       function.idle = static_cast<std::uint8_t>(request->wValue >> 8);
       return tud_control_status(port, request);
     case kGetIdle:
@@ -120,7 +120,7 @@ bool class_request(std::uint8_t port, const tusb_control_request_t* request) {
   }
 }
 
-/// A stall takes away what the endpoint was about to transfer; when the host ends the stall, that starts again.
+/// A stall cancels the endpoint's pending transfer; it starts again when the host ends the stall.
 void restart(std::uint8_t endpoint) {
   if (endpoint == kEndpointOut) {
     function.accepts = false;
@@ -132,7 +132,7 @@ void restart(std::uint8_t endpoint) {
   }
 }
 
-/// False stalls the request. Stages after the first have nothing to decide: no request brings data.
+/// False stalls the request. Stages after the first always succeed, because no request brings data.
 bool control(std::uint8_t port, std::uint8_t stage, const tusb_control_request_t* request) {
   if (stage != CONTROL_STAGE_SETUP) return true;
   const auto recipient = request->bmRequestType_bit.recipient;
@@ -195,7 +195,7 @@ bool HidPort::is_configured() const { return function.attached && tud_mounted() 
 
 }  // namespace hal::tinyusb
 
-// What TinyUSB calls.
+// Functions called by TinyUSB.
 
 extern "C" {
 

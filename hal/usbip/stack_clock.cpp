@@ -1,5 +1,5 @@
-// The clock that TinyUSB's delays ask for, on a computer. No function of ours waits; without optimisation the linker
-// keeps the delays all the same.
+// The clock for TinyUSB's delays on a computer. No function of this project waits, but without optimisation the linker
+// keeps the delays.
 #include <tusb.h>
 
 #include <chrono>

@@ -14,7 +14,7 @@
 
 #include "hal/usbip/usbip_messages.hpp"
 
-// After tusb.h, on whose types it relies.
+// After tusb.h, whose types it needs.
 #include <device/dcd.h>
 
 namespace hal::usbip {
@@ -26,17 +26,17 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint8_t kPort = 0;
 constexpr std::uint8_t kDirectionIn = TUSB_DIR_IN_MASK;
 using Clock = std::chrono::steady_clock;
-constexpr int kFramesToCatchUp = 8;              // this computer may be late; a bus is not
+constexpr int kFramesToCatchUp = 8;              // this computer may be late, a bus is never late
 constexpr std::size_t kLongestTransfer = 65536;  // far above anything that a HID device is asked for
 
-/// A transfer that the host waits for.
+/// A transfer for which the host waits.
 struct Transfer {
   Request request;
-  Bytes data;  ///< out: what the host sends; in: what it has got so far
+  Bytes data;  ///< out: data from the host; in: data for the host so far
   std::size_t sent = 0;
 };
 
-/// One direction of one endpoint: what TinyUSB is ready for, and the host's transfers that wait for it.
+/// One direction of one endpoint: TinyUSB's pending transfer, and the host's transfers that wait for it.
 struct Endpoint {
   bool open = false, armed = false, stalled = false;
   std::uint8_t* buffer = nullptr;
@@ -91,7 +91,8 @@ void report_done(std::uint8_t address, std::size_t size) {
   dcd_event_xfer_complete(kPort, address, static_cast<std::uint32_t>(size), XFER_RESULT_SUCCESS, false);
 }
 
-/// Moves what both sides are ready for. The device's reports are single packets, so each packet in ends a transfer.
+/// Makes the transfers for which both sides are ready. The device's reports are single packets, so each packet in ends
+/// a transfer.
 void advance(std::uint8_t address) {
   Endpoint& side = endpoint(address);
   if (side.stalled) {
@@ -120,7 +121,7 @@ void advance(std::uint8_t address) {
   report_done(address, size);
 }
 
-/// How long to wait for the next frame in which there is something to move, at most `longest`.
+/// Time until the next frame with a transfer, at most `longest`.
 Clock::duration time_to_next_frame(Clock::duration longest) {
   const auto now = Clock::now();
   for (const auto& number : controller.endpoints)
@@ -192,7 +193,7 @@ void unlink(const Request& request) {
   write_all(header.data(), header.size());
 }
 
-/// Takes one whole message out of what was received; empty while it is not all there.
+/// Takes one whole message out of the received bytes; empty if it is incomplete.
 std::optional<Transfer> next_message() {
   Bytes& received = controller.received;
   if (received.size() < kHeaderSize) return std::nullopt;

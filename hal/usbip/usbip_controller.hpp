@@ -8,18 +8,19 @@
 
 namespace hal::usbip {
 
-/// One device a program, because TinyUSB's stack is the program's.
+/// One device per program, because TinyUSB has one stack per program.
 class UsbipController {
  public:
   /// Takes over the socket and shows `port`, which must have been started, the bus reset that a new host begins with.
-  /// An endpoint moves one report a `frame`, as on a real bus; vhci-hcd alone would go as fast as the computer can.
+  /// An endpoint moves one report per `frame`, as on a real bus; vhci-hcd alone would transfer as fast as the computer
+  /// can.
   UsbipController(int socket, tinyusb::HidPort& port, std::chrono::microseconds frame = std::chrono::milliseconds(1));
   UsbipController(const UsbipController&) = delete;
   UsbipController& operator=(const UsbipController&) = delete;
   ~UsbipController();
 
-  /// Waits for transfers at most as long as said, and handles those that are there. False when the host has gone, or
-  /// does not speak USB/IP; the port is then not configured any more.
+  /// Waits for transfers for at most the given time, and handles them. False if the host is gone or does not speak
+  /// USB/IP; then the port is no longer configured.
   bool serve(std::chrono::nanoseconds wait);
 
  private:

@@ -12,10 +12,10 @@ using Header = std::array<std::uint8_t, kHeaderSize>;
 
 enum class Command : std::uint32_t { submit = 1, unlink = 2, submit_reply = 3, unlink_reply = 4 };
 
-// What a reply's status says: negative error numbers of Linux, whatever the system.
+// Status of a reply: negative error numbers of Linux, on every system.
 inline constexpr std::int32_t kDone = 0, kStalled = -32, kUnlinked = -104;
 
-/// What the host asks. `submit`: a transfer. `unlink`: take back the transfer `victim`.
+/// Requests of the host. `submit`: a transfer. `unlink`: cancels the transfer `victim`.
 struct Request {
   Command command{};
   std::uint32_t sequence = 0;

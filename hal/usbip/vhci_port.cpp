@@ -52,7 +52,7 @@ int plug_into_vhci() {
   const bool attached = write(file, request.data(), request.size()) == static_cast<ssize_t>(request.size());
   const int why = errno;
   close(file);
-  close(ends[0]);  // the kernel keeps its own hold of it
+  close(ends[0]);  // the kernel keeps its own reference
   if (!attached) {
     close(ends[1]);
     fail(why, attach + ": port " + std::to_string(port));

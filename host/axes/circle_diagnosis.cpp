@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr int kHats = 8;  ///< of the memory, over the angle
 constexpr double kUsualMemory_um = 5.0;
-constexpr double kPlace_um = 1000.0;  ///< of centre and radius, before the measurement
+constexpr double kPlace_um = 1000.0;  ///< prior standard deviation of centre and radius
 constexpr double kLeastNoise = 0.2;   ///< rows have noise of size 1
 constexpr double kCauseOdds = 0.25;   ///< prior probability of a cause
 constexpr std::size_t kMostCauses = 10, kTried = 3;

@@ -25,7 +25,7 @@ struct CircleFinding {
   std::vector<std::pair<std::string, double>> instead;  ///< alternative causes with their probabilities
 };
 
-/// Of ISO 230-4, from the outer sensor where there is one, otherwise from the encoders; means over 1 degree.
+/// Terms of ISO 230-4, from the outer sensor if there is one, otherwise from the encoders; means over 1 degree.
 struct CircleFigures {
   double G_um = 0.0;                      ///< circular deviation: largest less smallest radius about the best centre
   double F_max_um = 0.0, F_min_um = 0.0;  ///< radial deviation from the nominal circle

@@ -33,7 +33,7 @@ struct BodeArguments : DeviceArguments {
   bool linear = false;
 };
 
-/// What the axis is and runs, as far as it is known.
+/// Model, controller and scales of the axis, as far as known.
 struct Controlled {
   std::optional<sim::DriveDescription> model;
   std::optional<firmware::AxisParameters<float>> controller;
@@ -65,7 +65,7 @@ void keep_records(const std::vector<host::Record>& records, const std::string& f
     host::write_record(records[i], fmt::format("{}/run-{:02}.csv", folder, i + 1));
 }
 
-/// The runs on a board. What came before a failure is kept.
+/// The runs on a board. Records before a failure are kept.
 std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& found) {
   if (arguments.box.empty())
     throw host::Failure(host::ExitCode::refused,
@@ -113,7 +113,7 @@ std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& fo
   return records;
 }
 
-/// Through the gate; without a model the first record is held to be right in what it says of its drive.
+/// Records checked by the gate; without a model, the drive is taken from the first record.
 std::vector<host::Record> admitted(const BodeArguments& arguments, const Controlled& found) {
   const sim::DriveDescription drive =
       found.model ? *found.model : host::presumed_sheet(host::read_record(arguments.what.front()));

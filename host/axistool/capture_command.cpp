@@ -112,7 +112,7 @@ void write(const CaptureArguments& arguments, const host::Capture& capture, cons
                capture.lost, interrupted() ? "; ended by a signal" : "");
 }
 
-/// In the board's own memory, at loop rate, whatever the way to the computer carries.
+/// Capture in the board's own memory, at loop rate, independent of the connection's speed.
 void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings settings) {
   host::TriggeredSettings wanted;
   wanted.wide = arguments.wide;

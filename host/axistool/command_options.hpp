@@ -15,8 +15,8 @@ enum class FileRole {
 
 void note_role(const CLI::Option& option, FileRole role);
 
-/// An option or positional for files that the command reads: no output may take the place of one. (The one exception,
-/// declared without it, is a model that a command reads in order to write it again.)
+/// An option or positional for files that the command reads, which no output may overwrite. The only exception,
+/// declared without this function, is a model that a command reads in order to write it again.
 template <typename T>
 CLI::Option* add_input(CLI::App& command, const std::string& name, T& destination, const std::string& help) {
   CLI::Option* const option = command.add_option(name, destination, help);
@@ -28,8 +28,8 @@ CLI::Option* add_input(CLI::App& command, const std::string& name, T& destinatio
 CLI::Option* add_output(CLI::App& command, const std::string& name, std::string& destination, const std::string& help,
                         FileRole role = FileRole::output);
 
-/// Checks all options: protects inputs, and requires outputs that can be written and differ, and finite numbers (option
-/// parsers accept "nan" in any range). Throws host::Failure.
+/// Checks all options: no output overwrites an input, all outputs differ and can be written, and numbers are finite
+/// (option parsers accept "nan" in any range). Throws host::Failure.
 void check_options(const CLI::App& program);
 
 }  // namespace axistool

@@ -1,5 +1,4 @@
-// The commands of axistool. Each lives in a file of its own, which parses options and prints; the work is in the
-// library.
+// The commands of axistool. Each has a separate file, which parses options and prints; the work is done in the library.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -33,13 +33,13 @@ struct CommissionArguments : DeviceArguments {
 
 bool is_simulated(const CommissionArguments& arguments) { return !arguments.model.empty() || !arguments.plant.empty(); }
 
-/// A home switch within the box.
+/// The usual wiring, with a home switch within the box.
 hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
   const double usual = options.sheet.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025;
   return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
 }
 
-/// One axis, behind the board's own protocol.
+/// The board, or a simulated axis behind the board's own protocol.
 host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
                            const host::CommissionOptions& options) {
   if (!is_simulated(arguments)) return open_board(arguments);
@@ -79,7 +79,7 @@ std::optional<host::CommissionHoming> homing_of(const CommissionArguments& argum
 
 std::uint8_t axis_of(const std::string& name) { return axis_index(name, hal::kMostAxes); }
 
-/// The data sheet: of the command line, else of the machine that is simulated, else as the folder keeps it.
+/// The data sheet: from the command line, else of the simulated machine, else from the folder.
 sim::DriveDescription sheet_of(const CommissionArguments& arguments, const std::string& kept) {
   std::error_code fault;
   if (!arguments.drive.empty()) return host::read_drive(arguments.drive);

@@ -29,7 +29,7 @@ void add_effects_to(Completions& all) {
     all.words.push_back({std::string(info->kind), std::string(info->title)});
 }
 
-/// With "=" behind it where a value follows; groups where none does.
+/// With "=" after it if a value follows; groups if none follows.
 void add_parameters_to(Completions& all, bool with_value) {
   std::set<std::string> groups;
   for (const std::string& name : host::all_parameter_names()) {
@@ -57,7 +57,7 @@ void add_scenarios_to(Completions& all) {
   all.files = {"toml"};
 }
 
-/// What options and positionals of these names take, in whatever command they stand.
+/// Values of options and positionals with these names, in any command.
 void add_values(const CLI::App& app, const CLI::App& command, const std::string& name, Completions& all) {
   const std::map<std::string, Words> files = {{"--model", {"toml"}},   {"--drive", {"toml"}},     {"--train", {"csv"}},
                                               {"--validate", {"csv"}}, {"MODEL", {"toml"}},       {"model", {"toml"}},
@@ -134,14 +134,14 @@ void add_options_to(const CLI::App& command, Completions& all) {
   }
 }
 
-/// Where the last word stands: behind an option that takes it, or as the so many-th positional.
+/// Place of the last word: the value of an option, or a positional with this index.
 class Place {
  public:
   Place(const CLI::App& command, const Words& words) : command_(command) {
     for (std::size_t k = 1; k + 1 < words.size(); ++k) pass(words[k]);
   }
 
-  /// Whose value the last word is, if anything's.
+  /// The option or positional whose value the last word is, if any.
   const CLI::Option* taker() const { return open_; }
   bool must_be_value() const { return open_ != nullptr && given_ < open_->get_items_expected_min(); }
   const CLI::Option* positional() const {

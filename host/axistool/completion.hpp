@@ -14,14 +14,14 @@ struct Completion {
 
 struct Completions {
   std::vector<Completion> words;
-  /// Endings of files that fit besides, without their dots; "*" stands for any file. Empty: no files.
+  /// Endings of files that are also candidates, without their dots; "*" stands for any file. Empty: no files.
   std::vector<std::string> files;
 };
 
-/// `words`: what was typed after the program's name; the last one, possibly empty, is being typed.
+/// `words`: the words after the program's name; the last one, possibly empty, is incomplete.
 Completions complete(const CLI::App& app, const std::vector<std::string>& words);
 
-/// The script that asks `axistool complete` for bash, zsh or fish.
+/// The script for bash, zsh or fish, which calls `axistool complete`.
 std::string completion_script(const std::string& shell);
 
 }  // namespace axistool

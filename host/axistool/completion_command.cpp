@@ -1,4 +1,4 @@
-// axistool completion: the script for a shell's tab key; axistool complete: what the script asks.
+// axistool completion: the script for a shell's tab key; axistool complete: called by that script.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

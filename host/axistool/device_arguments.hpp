@@ -1,4 +1,4 @@
-// The options that every command with a board has.
+// The options of every command that uses a board.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -24,7 +24,7 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.3g} %", 100.0 * *share) : "-";
 }
 
-/// As compare prints them.
+/// The figures, as printed by compare.
 void print_errors(const host::Diagnosis& diagnosis) {
   fmt::print("Prediction error over noise floor (1 is perfect)   train  validation\n");
   const auto row = [](const char* name, const host::ErrorOnSets& error) {

@@ -29,8 +29,8 @@ void add_dial(CLI::App& app) {
   auto arguments = std::make_shared<DialArguments>();
   CLI::App* command = app.add_subcommand("dial", "Measure lost motion from readings of a dial gauge on the table");
   add_input(*command, "READINGS", arguments->file,
-            "CSV, a row per reading in the order taken, the axis at rest: x_mm,dial_mm (position shown by the control, "
-            "reading of the gauge; also _um, _m)")
+            "CSV with columns x_mm (position shown by the control) and dial_mm (reading of the gauge), units also _um, "
+            "_m; one row for each reading, in the order taken, with the axis at rest")
       ->required();
   add_json_option(*command, arguments->json);
   command->footer(

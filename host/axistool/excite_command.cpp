@@ -82,7 +82,7 @@ nlohmann::json document_of(const ExciteArguments& arguments, const host::Excitat
           {"dropped_by_board", outcome.capture.dropped_by_board}};
 }
 
-/// What is to be run: one excitation, or the pieces of a planned run.
+/// The excitations to run: a single one, or the pieces of a planned run.
 struct Programme {
   host::RunPlan run;
   bool is_plan = false;

@@ -30,7 +30,7 @@ struct HilArguments {
   bool fault_page = false, list = false, before_after = false, allow_program = false;
 };
 
-/// Reads it, and asks before anything runs that the file names.
+/// Reads a scenario, and asks before it runs programs that the file names.
 host::Scenario agreed_scenario(const std::string& path, const HilArguments& arguments) {
   host::Scenario scenario = host::read_scenario(path);
   for (const std::string& command : host::programs_of(scenario))
@@ -46,7 +46,7 @@ std::string stem_of(const std::string& scenario, const std::string& folder) {
   return (std::filesystem::path(folder) / std::filesystem::path(scenario).stem()).string();
 }
 
-/// The files of a scenario are named after it: two of one name would overwrite each other's.
+/// The files of a scenario are named after it, so two scenarios of one name would overwrite each other's files.
 void check_names(const HilArguments& arguments) {
   std::map<std::string, std::string> taken;
   for (const std::string& path : arguments.scenarios) {
@@ -101,7 +101,7 @@ void list_shipped() {
     fmt::print("{:<32} {}\n", name, host::read_scenario(host::scenario_file(name)).name);
 }
 
-/// The scenario as it is, and again with the models of the command line: one page of both.
+/// Runs the scenario unchanged, and again with the models of the command line; writes one page of both.
 void run_before_and_after(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
   if (arguments.scenarios.size() != 1 || models.empty())
     throw host::Failure(host::ExitCode::usage, "--before-after needs one scenario, and --model for the new model");

@@ -1,4 +1,4 @@
-// What diagnose, add and improve have in common: a model, records to train on, records to validate on.
+// Common options of diagnose, add and improve: a model, training records, validation records.
 #pragma once
 
 #include <mutex>
@@ -33,7 +33,7 @@ struct InsightArguments {
   }
 };
 
-/// A model and the records that passed the gate with it.
+/// A model and the records that the gate has accepted for it.
 struct InsightRecords {
   sim::DriveDescription model;
   host::Measurements measurements;

@@ -6,7 +6,7 @@ namespace axistool {
 /// From now on interrupted() reports Ctrl-C, SIGTERM and SIGHUP.
 void catch_interrupts();
 
-/// They end the program again, at once.
+/// From now on these signals end the program at once again.
 void release_interrupts();
 
 bool interrupted();

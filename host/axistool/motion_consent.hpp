@@ -9,7 +9,7 @@ namespace axistool {
 
 std::string box_text(const host::ExcitationLimits& box, sim::DriveKind kind);
 
-/// On standard error. Throws Failure(refused) where it is interrupted.
+/// Prints on standard error. Throws Failure(refused) if it is interrupted.
 void count_down(int seconds);
 
 }  // namespace axistool

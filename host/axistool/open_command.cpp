@@ -113,7 +113,7 @@ nlohmann::json judge(const OpenArguments& arguments, const host::Opening& openin
   return document;
 }
 
-/// Of every axis that has records; a refusal of one does not end the others.
+/// For every axis that has records; a refusal of one does not stop the others.
 nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> axes;
   for (const host::OpenedRecord* record : opening.records())
@@ -131,8 +131,8 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
   return all;
 }
 
-/// A data sheet of each axis, filled in as far as the log and --kt tell, and what still belongs there. One that is
-/// there already may have been filled in by hand: it stays.
+/// Writes a data sheet for each axis, filled in as far as the log and --kt allow, and lists the missing fields. An
+/// existing one may have been filled in by hand, so it is kept.
 std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> written;
   for (const host::OpenedRecord* opened : opening.records()) {

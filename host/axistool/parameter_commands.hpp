@@ -25,7 +25,7 @@ inline std::vector<Difference> differences(const firmware::ParameterValues& befo
   return list;
 }
 
-/// The board's values with those of a file, or of NAME=VALUE arguments, put in.
+/// The board's values, changed by those of a file or of NAME=VALUE arguments.
 firmware::ParameterValues with_changes(firmware::ParameterValues values, const std::vector<std::string>& sources,
                                        const std::string& axis);
 

@@ -50,7 +50,7 @@ class SignalsWait {
   sigset_t signals_{};
 };
 
-/// Of the program, where the path is.
+/// Line of the program at the present point of the path.
 std::size_t line_at(const host::PlannedPath& path, double elapsed_s) {
   const auto next = std::ranges::upper_bound(path.curves, elapsed_s, {}, &host::PlannedCurve::time_s);
   return next == path.curves.begin() ? 0 : (next - 1)->line;
@@ -85,7 +85,7 @@ class RunLine {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-/// Whether a waiting program continues, and how fast it goes on.
+/// Whether a waiting program continues, and the overrides.
 class Operator {
  public:
   Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
@@ -123,7 +123,7 @@ class Operator {
   const host::PathStop* announced_ = nullptr;
 };
 
-/// A program on a board, in parts: a probing move is one, and where it ended the next one begins.
+/// A program on a board, in parts: each probing move is one part, and the next part begins where it ended.
 class Parts {
  public:
   Parts(host::BoardClient& board, const host::PathBoard& machine, bool relative, const RunArguments& arguments)
@@ -193,7 +193,7 @@ class Parts {
       host::write_record(host::path_record(part, machine_, contour_um), arguments_.capture);
   }
 
-  /// Whether the probe says already what a move looks for. G38.3 and G38.5 end there at once (LinuxCNC,
+  /// Whether the probe is already in the state that a move looks for. G38.3 and G38.5 end there at once (LinuxCNC,
   /// motion/command.c: G38.2 and G38.4 are errors then, as the board says).
   bool is_there(const host::GcodeProbe& probe) {
     const bool touches = (board_.probe_state().flags & firmware::kProbeTouches) != 0;

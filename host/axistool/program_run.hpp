@@ -1,4 +1,4 @@
-// A G-code program on a board's axes: planned, followed in parts where it probes, with an operator beside it.
+// Runs a G-code program on a board's axes: plans it, follows it (in parts if it probes), and obeys the operator.
 #pragma once
 
 #include <string>
@@ -24,16 +24,16 @@ struct Planned {
   host::PlannedPath path;
 };
 
-/// What a probing move found.
+/// Result of a probing move.
 struct ProbeResult {
   host::GcodeProbe probe;
   std::size_t line = 0;    ///< of the program
-  std::vector<double> mm;  ///< of each axis, where its edge came; empty: it did not come
+  std::vector<double> mm;  ///< position of the edge for each axis; empty: no edge
 };
 
 struct ProgramOutcome {
   firmware::PathEnd end = firmware::PathEnd::completed;
-  std::string failure;  ///< of a probing move that the program needs
+  std::string failure;  ///< of a required probing move
   double path_s = 0.0, planned_s = 0.0;
   double clock_s = 0.0;  ///< with holds, overrides and stops
   double worst_um = 0.0, squares_um2 = 0.0;
@@ -47,20 +47,20 @@ inline std::string_view sought_by(const host::GcodeProbe& probe) {
   return probe.is_away ? "loss of contact" : "contact";
 }
 
-/// `probed`: where its first probing moves ended.
+/// `probed`: end positions of its first probing moves.
 host::GcodeProgram read_program(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
                                 const host::PathPoint& start, const std::vector<host::PathPoint>& probed);
 host::PlannedPath plan_moves(const std::vector<host::PathMove>& moves, const RunArguments& arguments,
                              const host::PathBoard& board);
 host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale);
 
-/// Before a program starts or continues after a stop: the axes must be homed and without faults.
+/// Check before a program starts or continues after a stop: the axes must be homed and without faults.
 void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative);
 
-/// Ctrl-Z holds the feed and lets it go again; a terminal's other ways of stopping a program end the path.
+/// Ctrl-Z holds and resumes the feed; a terminal's other ways of stopping a program end the path.
 void catch_signals();
 
-/// Of enabled axes, from where they stand. Throws what run_path throws.
+/// Runs it with enabled axes, from their present positions. Throws what run_path throws.
 ProgramOutcome run_program(host::BoardClient& board, const host::PathBoard& machine, bool relative,
                            const RunArguments& arguments, const std::string& text);
 

@@ -29,7 +29,7 @@ host::PathPoint standing(const host::BoardState& status, const host::PathScale& 
   return point_of(at, scale);
 }
 
-/// As if no probe met anything.
+/// As if no probe made contact.
 Planned plan(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
              const host::PathPoint& start) {
   Planned planned{read_program(text, arguments, board, start, {}), {}};
@@ -134,7 +134,7 @@ void require_probe(host::BoardClient& board, const RunArguments& arguments, cons
     throw Failure(ExitCode::refused, where + ", and is run in parts, of which --capture cannot make one record");
 }
 
-/// Checks the program before it needs a machine.
+/// Checks of the program that need no machine.
 void require_program(const std::string& text, const RunArguments& arguments) {
   host::GcodeMachine any;
   any.axes = 3;
@@ -142,7 +142,7 @@ void require_program(const std::string& text, const RunArguments& arguments) {
   host::read_gcode(text, arguments.file, host::PathPoint::Zero(), any);
 }
 
-/// Empty for a dry run without a board: limits then come from files or are a new board's.
+/// Empty for a dry run without a board: then the limits come from files, or are those of a new board.
 std::optional<host::BoardClient> board_of(const RunArguments& arguments) {
   if (arguments.dry_run && !arguments.params.empty()) return {};
   try {
@@ -195,7 +195,7 @@ void run(const RunArguments& arguments) {
   catch_signals();
   const bool was_enabled = host::are_enabled(board, mask);
   if (!was_enabled) host::enable_and_wait(board, mask);
-  // From where the references stand, now that the loops are closed.
+  // From the present references, now that the loops are closed.
   const ProgramOutcome outcome = run_program(board, machine, relative, arguments, text);
   if (!was_enabled) host::disable_and_wait(board, mask);
   tell(outcome, arguments, document);

@@ -154,8 +154,8 @@ void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, boo
   }
   if (talks)
     fmt::print(
-        "Without their effect in the catalogue: {} cases, {} without a name, {} near relatives, {} wrong; the right "
-        "coordinate or a relative in {}\n",
+        "With the effect of each case left out of the catalogue: {} cases, {} without a name, {} near relatives, {} "
+        "wrong; the right coordinate or a relative in {}\n",
         lines.size(), outcomes[Outcome::right], outcomes[Outcome::group], outcomes[Outcome::wrong], coordinates);
   if (!json.empty()) write_json({{"format", "axis-left-out/1"}, {"trials", lines}}, json);
 }

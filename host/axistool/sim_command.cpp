@@ -64,7 +64,7 @@ host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
                                        : host::read_drive(file));
 }
 
-/// AXIS=TRAVEL: beyond it, seen from 0.
+/// AXIS=TRAVEL: the probe is in contact beyond this travel, seen from 0.
 hal::pc::SimulatedSurface surface(const std::string& text, std::size_t axes) {
   const std::size_t equals = text.find('=');
   const auto travel = host::parse_number(equals == std::string::npos ? "" : text.substr(equals + 1));

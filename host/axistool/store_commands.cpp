@@ -69,7 +69,8 @@ void backup(const StoreArguments& arguments) {
     fmt::print("{} stored values do not fit this firmware's table; the file keeps them as comments\n", foreign.size());
 }
 
-/// The board refuses pitch.on without its table, and a table in other counts: the values come first, without pitch.on.
+/// The board refuses pitch.on without its table, and a table in other counts, so values are set first, without
+/// pitch.on.
 void write_whole(host::BoardClient& board, const firmware::ParameterValues& values,
                  const std::optional<host::PitchTables>& pitch) {
   if (!pitch) return board.write_values(values);

@@ -1,4 +1,4 @@
-// What is typed on the terminal while a command runs, key by key.
+// Reads the keys typed on the terminal while a command runs.
 #pragma once
 
 #include <poll.h>
@@ -10,8 +10,8 @@
 
 namespace axistool {
 
-/// Keys arrive without Enter and without an echo until this ends. Nothing of it where standard input is no terminal, or
-/// another program's in the foreground. Ctrl-C and Ctrl-Z stay signals.
+/// During its lifetime, keys arrive without Enter and without an echo. Has no effect if standard input is not a
+/// terminal, or if another program is in its foreground. Ctrl-C and Ctrl-Z remain signals.
 class TypedKeys {
  public:
   TypedKeys() {
@@ -27,7 +27,7 @@ class TypedKeys {
   TypedKeys(const TypedKeys&) = delete;
   TypedKeys& operator=(const TypedKeys&) = delete;
 
-  /// Since the last call; Enter is '\n'. Never waits.
+  /// Keys since the last call; Enter is '\n'. Never waits.
   std::string take() const {
     std::string typed;
     pollfd input{STDIN_FILENO, POLLIN, 0};

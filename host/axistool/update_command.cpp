@@ -1,4 +1,4 @@
-// axistool update: a new image for a board's program, over the cable that the board talks over.
+// axistool update: a new image for a board's program, over its USB cable.
 #include <fmt/format.h>
 
 #include <memory>
@@ -39,7 +39,7 @@ void send(host::BoardClient& board, const host::ImageFile& file) {
   });
 }
 
-/// Confirms the new image, where it runs; throws Failure where the board has returned to the old one.
+/// Confirms the new image if it runs; throws Failure if the board has returned to the old one.
 void confirm(host::BoardClient& board, const host::ImageFile& file) {
   if (!runs(slots_of(board), file))
     throw host::Failure(host::ExitCode::device_fault,

@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// As the axis would stop with these parameters. A brake's effort is unknown.
+/// Figures of a stop with these parameters. A brake's effort is unknown.
 StoppingFigures figures_of(const CommissionSession& session, const sim::DriveDescription& model,
                            const firmware::AxisValues& values) {
   const ReferenceLimits limits = session.limits();

@@ -1,4 +1,4 @@
-// First checks: access to the board, faults, and the sign of its feedback.
+// First checks: access to the board, faults, and the sign of the feedback.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// At rest, the drive disabled.
+/// What the sensors show at rest, with the drive disabled.
 nlohmann::json look_at_rest(CommissionSession& session) {
   CaptureSettings settings;
   settings.axis = session.options().axis;

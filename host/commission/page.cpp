@@ -125,7 +125,7 @@ Verdict verdict_of(const Page& page) {
   return verdict;
 }
 
-/// What each set of parameters changes from the previous one.
+/// Changes of each set of parameters from the previous one.
 std::string set_title(const Page& page, const std::string& name) {
   const bool is_first = page.sets().size() < 3;
   if (name == "before")

@@ -104,7 +104,7 @@ class CommissionSession {
   /// Writes the file of a controller for `model`, and returns its parameters on this board, with the planned limits.
   firmware::ParameterValues design(const sim::DriveDescription& model, const CommissionLoop& loop,
                                    const std::string& file);
-  /// Of modest bandwidth: nothing is known of delays and resonances yet.
+  /// A controller of modest bandwidth, because delays and resonances are not known yet.
   CommissionLoop first_loop(const sim::DriveDescription& model) const;
   DesignOptions first_options() const;
   /// Equal for all sets of parameters, so that motions are the same: from `model` and the box, and kept in the folder.

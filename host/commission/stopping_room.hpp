@@ -1,4 +1,4 @@
-// Whether an axis that is let go comes to rest before its hard stops, by the identified drive.
+// Whether an axis comes to rest before its hard stops, with or without current, by the identified drive.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Of an axis at the box's highest speed, mm (m); the formulas are StoppingFigures's.
+/// Stopping distances at the box's highest speed, mm (m), by the formulas of StoppingFigures.
 struct StoppingRoom {
   double speed = 0.0;    ///< mm/s (m/s)
   double ramp = 0.0;     ///< along the reference's ramp: faults that leave a working sensor, Ctrl-C, a silent host

@@ -48,7 +48,7 @@ double first_stamp_s(const RecordSet& set);
 double steps_of(const sim::Drive& drive, const RecordSet& set);
 
 /// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
-/// By effort, only windows remain in which the axis slides throughout.
+/// If torque or force is the measure, only windows remain in which the axis slides throughout.
 RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
                      double window_s = kWindow_s, Measure measure = Measure::motion);
 
@@ -65,13 +65,13 @@ struct WindowScore {
   std::size_t window;
   double x = 0.0;  ///< mean squared error of the channel over its floor squared; 0 where the record lacks it
   double w = 0.0;
-  double effort = 0.0;  ///< the same of the effort, where that is the measure
+  double effort = 0.0;  ///< the same for torque or force, if that is the measure
 
-  /// All channels, each as a fit weighs it.
+  /// Sum over all channels, each with its weight in a fit.
   double weighed(double common_square) const;
 };
 
-/// RMS errors of a model on a set.
+/// RMS errors of a model on a record set.
 struct SetError {
   double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
   double robust = 0.0;    ///< the same with outlying windows weighted by the logarithm: the objective of a fit
@@ -79,12 +79,12 @@ struct SetError {
   double w_rms = 0.0;     ///< rad/s or m/s
   double x_floor = 0.0;   ///< RMS of the windows' floors
   double w_floor = 0.0;
-  double effort_rms = 0.0;  ///< Nm or N, where the effort is the measure; the others are zero then
+  double effort_rms = 0.0;  ///< Nm or N, if torque or force is the measure; then the others are zero
   double effort_floor = 0.0;
   std::vector<WindowScore> windows;
 };
 
-/// Squared error of a window over its floor squared, as a fit weighs it.
+/// Squared error of a window over its squared noise floor, with its weight in a fit.
 double weighed_square(double square, double common_square);
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set);

@@ -66,7 +66,7 @@ std::size_t record_in(const Focus& focus, const ModelComparison& comparison) {
 
 namespace {
 
-/// The samples of a range of one record.
+/// The samples within a time range of one record.
 ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const TimeSpan& since_start) {
   std::vector<std::size_t> kept;
   for (std::size_t k = 0; k < all.w.size(); ++k)

@@ -19,9 +19,10 @@ namespace host {
 
 namespace {
 
-constexpr double kAtFloor = 1.2;  ///< combined error up to which nothing is left to explain
+constexpr double kAtFloor = 1.2;  ///< combined error up to which nothing remains to be explained
 constexpr double kNear = 2.0;
-constexpr double kMuchBetter = 1.5;  ///< error without over error with effects from which on they help
+constexpr double kMuchBetter =
+    1.5;  ///< ratio of the errors without and with the effects from which they count as helpful
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -117,7 +118,7 @@ Verdict verdict_of(const ComparedModel& compared) {
   return verdict;
 }
 
-/// Several: which fits best, and the others beside it.
+/// Several models: the one that fits best, and the others in comparison.
 Verdict verdict_of(std::span<const ComparedModel> models) {
   const auto best =
       std::ranges::min_element(models, {}, [](const ComparedModel& one) { return one.comparison.error.combined; });

@@ -1,4 +1,4 @@
-// A record for the inverse model: the torque or force (effort) that its motion needed, and that of the motor.
+// A record for the inverse model: the torque or force (effort) that its motion needed, and the motor's.
 #pragma once
 
 #include <vector>
@@ -26,10 +26,10 @@ EffortRecord prepare_effort(const Record& record, const sim::DriveDescription& b
 /// One value per row, Nm or N; zeros within kMotionMargin of the ends.
 struct EffortPrediction {
   std::vector<double> needed;  ///< of the motion, by the drive's model
-  std::vector<double> given;   ///< of the motor, after the effects of the drive's command path
+  std::vector<double> given;   ///< of the motor, including the effects of the drive's command path
 };
 
-/// For a drive that has an inverse. `out` is resized when needed, so that it can be used again.
+/// For a drive that has an inverse. `out` is resized if needed, so it can be reused.
 void predict_effort(const sim::Drive& drive, const EffortRecord& prepared, EffortPrediction& out);
 
 }  // namespace host

@@ -8,13 +8,13 @@ namespace host {
 
 namespace {
 
-/// A drive whose load moves with its motor.
+/// The drive with a rigid connection: its load moves with its motor.
 sim::DriveDescription moving_as_one(sim::DriveDescription model) {
   std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
   return model;
 }
 
-/// The smoothed motion of the machine behind an encoder that errs as the drive's does.
+/// The smoothed motion of the machine, corrected for the error of the drive's encoder.
 struct TrueMotion {
   std::vector<double> x, w;
 

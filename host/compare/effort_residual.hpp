@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Samples of a record that move, thinned; all vectors of one length.
+/// Samples of a record in motion, thinned; all vectors have the same length.
 struct ResidualSamples {
   std::vector<std::size_t> row;  ///< of its record
   std::vector<double> t_s;
@@ -16,8 +16,8 @@ struct ResidualSamples {
   std::vector<double> w;             ///< smoothed speed, rad/s or m/s
   std::vector<double> acceleration;  ///< of w
   std::vector<double> effort;        ///< torque or force of the motor, Nm or N
-  std::vector<double> missing;       ///< torque or force of the motion that the model does not explain, Nm or N
-  std::vector<double> tach_error;  ///< tachometer less the model's tachometer at the smoothed speed; empty without one
+  std::vector<double> missing;       ///< torque or force that the motion needed beyond the model, Nm or N
+  std::vector<double> tach_error;  ///< tachometer minus the model's tachometer at the smoothed speed; empty without one
 };
 
 /// Residuals of `model` on every `stride`-th moving sample of a record. Friction is the model's curve at the smoothed
@@ -25,11 +25,11 @@ struct ResidualSamples {
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride);
 
-/// Of all records of a set, one after the other.
+/// Residuals of all records of a set, one after the other.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride);
 
-/// The same in averages at the samples of residual_effort(), for models that have an inverse (has_inverse): exact,
-/// where a prediction drifts from the measured motion and meets another friction.
+/// The same as averages at the samples of residual_effort(), for models that have an inverse (has_inverse). It is
+/// exact, whereas a prediction drifts from the measured motion and therefore has another friction.
 ResidualEffort residual_of_inverse(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

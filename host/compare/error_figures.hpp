@@ -16,8 +16,8 @@ struct ChannelFigures {
   std::string unit;          ///< of rms and floor
   double rms = 0.0;          ///< of prediction less measurement
   double fit_percent = 0.0;  ///< 100 (1 - |error| / |measured - mean|); 100 is perfect, 0 as good as the mean
-  /// rms over the RMS of the signal that the model has to explain: of a speed channel the measured speed, of a position
-  /// channel the travel since the restart of the window. Empty where the signal is zero.
+  /// rms over the RMS of the signal that the model has to explain: the measured speed for a speed channel, the travel
+  /// since the restart of the window for a position channel. Empty if the signal is zero.
   std::optional<double> share = {};
   double floor = 0.0;  ///< RMS noise floor: error of a perfect model, due to sensors and restart
 
@@ -30,22 +30,22 @@ struct ErrorFigures {
   std::vector<ChannelFigures> channels;  ///< speed, then position; those that were measured
   double combined = 0.0;                 ///< SetError::combined: about 1 for a perfect model
 
-  /// The channel whose error is the most times its noise floor; null where nothing was measured.
+  /// The channel with the largest ratio of error to noise floor; null if nothing was measured.
   const ChannelFigures* worst() const;
 };
 
 /// A record and its rows in use.
 struct FigureRecord {
   const Record* record;
-  std::optional<std::vector<Window>> windows = {};  ///< of the same length; empty: all that the record has room for
+  std::optional<std::vector<Window>> windows = {};  ///< of the same length; empty: as many as fit into the record
 };
 
-/// The records prepared for the figures of `model`: motion smoothed and noise floors propagated with it, each record by
-/// the sensors that it shows itself where the data sheet is silent. Keeps references to the records. Throws as
+/// The records prepared for the figures of `model`, which smooths the motion and propagates the noise floors. Sensor
+/// properties that the data sheet lacks are taken from each record itself. Keeps references to the records. Throws as
 /// prepare() does.
 RecordSet figure_set(const sim::DriveDescription& model, const std::vector<FigureRecord>& records, double window_s);
 
-/// Figures of a set by `error`, its error_of(); of one of its records where `record` is given.
+/// Figures of a set from `error`, its error_of(); of one of its records if `record` is given.
 ErrorFigures figures_of(const SetError& error, const RecordSet& set, std::optional<std::size_t> record = {});
 
 /// figures_of the model on figure_set() of the records.

@@ -17,7 +17,7 @@ struct Channels {
   }
 };
 
-/// The start with another speed, and the travel that goes with it.
+/// The start state with another speed, and the correlated change of travel.
 sim::DriveState changed(sim::DriveState state, double w, double x) {
   state.w += w;
   state.x += x;
@@ -26,8 +26,8 @@ sim::DriveState changed(sim::DriveState state, double w, double x) {
   return state;
 }
 
-/// The drive under a constant torque that carries it about as far within a window as noise of `deviation` a row: after
-/// n rows white noise has added up to a speed of sqrt(n) and a travel of sqrt(n^3/3) of its steps, a constant to n and
+/// The drive under a constant torque that moves it within a window about as far as noise of `deviation` per row does.
+/// After n rows, white noise adds up to a speed of sqrt(n) and a travel of sqrt(n^3/3) steps, a constant to n and
 /// n^2/2.
 sim::Drive pushed(sim::DriveDescription model, double deviation, std::size_t rows) {
   constexpr double kBetween = 1.2;  // 1 for the speed, 4/3 for the travel
@@ -52,7 +52,7 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
   const std::vector<sim::DriveState> states = restart_states(drive, prepared, stride);
   if (prepared.record->has_position()) floor.x.resize(prepared.windows.size());
   if (prepared.record->has_speed()) floor.w.resize(prepared.windows.size());
-  // The measured torque differs from the acting one.
+  // The measured torque differs from the acting torque.
   std::vector<sim::Drive> misled;
   if (prepared.effort_noise > 0.0 && !prepared.windows.empty())
     for (const double sign : {-1.0, 1.0})
@@ -61,9 +61,9 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
     const sim::DriveState& start = states[index / stride];
-    // The two independent parts of the restart's error: of the speed with the travel that goes with it, and of the
-    // travel alone. Each is tried with both signs, because friction turns small errors into different motions. An axis
-    // that seems to stand may creep, and a command near breakaway then determines the whole window.
+    // The two independent parts of the restart's error: an error of the speed with the correlated error of travel, and
+    // an error of travel alone. Each is tried with both signs, because friction turns small errors into different
+    // motions. An axis that seems to stand may creep; then a command near breakaway determines the whole window.
     const bool stands = motion.standing[window.begin];
     const double speed_variance = stands ? motion.hidden_creep * motion.hidden_creep : motion.w_variance[window.begin];
     const double slant = !stands && speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
@@ -89,7 +89,7 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
       run_side_by_side(misled[1], prepared, more);
       spread(slower, faster);
     }
-    // A diverging model: its error is largest on any floor.
+    // For a diverging model the noise floor does not matter.
     if (!std::isfinite(x_variance + w_variance)) {
       x_variance = motion.x_variance[window.begin];
       w_variance = motion.w_variance[window.begin];

@@ -15,8 +15,8 @@ struct ErrorFloor {
   std::vector<double> w;
 };
 
-/// Computes the floors of every `stride`-th window; those of the others stay as they are, 0 where there were none.
-/// `drive` is the model's.
+/// Computes the floors of every `stride`-th window; those of the others stay unchanged (0 if there were none). `drive`
+/// must be that of the model.
 void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const sim::Drive& drive,
                  const PreparedRecord& prepared, std::size_t stride);
 

@@ -148,13 +148,13 @@ Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, c
   return partition;
 }
 
-/// Values begin ... end-1.
+/// The values with indices begin to end - 1.
 struct Stretch {
   std::size_t begin = 0, end = 0;
 };
 
-/// Neighbouring values of the largest sum (Kadane); empty where none is positive. A stretch that began at `begin` may
-/// go on to k where `joins(begin, k)`.
+/// The consecutive values with the largest sum (Kadane); empty if no value is positive. A range that began at `begin`
+/// may include k if `joins(begin, k)`.
 template <typename Joins>
 Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
   Stretch best;
@@ -174,8 +174,8 @@ Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
   return best;
 }
 
-/// The interval of travel with the most excess error, found like that of time in by_event. Absent if it covers most of
-/// the travel.
+/// The interval of travel with the most excess error, found like the interval of time in by_event. Absent if it covers
+/// most of the travel.
 Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   constexpr std::size_t kBins = 200;
   Partition partition("place");
@@ -228,7 +228,7 @@ Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   return partition;
 }
 
-/// How long the axis had rested before the motion that a row belongs to; only the start of the motion counts.
+/// Duration of the rest before the motion of a row; only the start of the motion counts.
 Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   constexpr double kStart_s = 0.2;  // friction that grew at rest is overcome within this time
   constexpr double kEdges_s[] = {0.0, 0.1, 0.3, 1.0, 3.0};
@@ -307,10 +307,10 @@ std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const
 }
 
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
-  constexpr double kLeastShare = 0.3;  // of the error: less is not where "it" fails
+  constexpr double kLeastShare = 0.3;  // of the error: a smaller share does not locate the failure
   constexpr double kStretchShare = 0.5;
   constexpr double kEventPortion = 0.05;
-  constexpr double kOrderPortion = 0.05;  // a line in a spectrum is about so surprising
+  constexpr double kOrderPortion = 0.05;  // probability assumed for one line of a spectrum
   const ErrorRegion* worst = nullptr;
   double most = 0.0;
   for (const ErrorRegion& region : regions) {

@@ -27,8 +27,8 @@ struct ErrorRegion {
 /// cannot show (no motion, no position) is absent.
 std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const RecordSet& set);
 
-/// The region that holds the most error in the fewest samples, or nullptr where all error is floor. By the error's
-/// magnitude: by its square, one late breakaway would hide recurring errors.
+/// The region with the most error in the fewest samples, or nullptr if all error is at the noise floor. Uses the
+/// error's magnitude, because with its square one late breakaway would hide recurring errors.
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions);
 
 /// "most of the error lives in the first 50 um after a reversal (41 % of it, 3 % of the time)".

@@ -54,7 +54,7 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
 void append_error_orders(const sim::DriveDescription& model, const RecordSet& set, std::vector<ErrorRegion>& regions) {
   constexpr std::size_t kMostOrders = 4;
   constexpr double kLeastShare = 0.02;
-  constexpr double kStepsAPeriod = 40.0;    // shorter periods come from the encoder's steps
+  constexpr double kStepsAPeriod = 40.0;    // encoder steps cause shorter periods
   constexpr double kPeriodsOfTravel = 3.0;  // fewer are a trend
   constexpr double kLinesOfTravel = 2000.0;
   constexpr std::size_t kStride = 2;

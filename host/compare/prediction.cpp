@@ -9,9 +9,9 @@ namespace host {
 
 namespace {
 
-/// Builds the states that windows restart from, as a drive understands the record: hidden states follow the motion
-/// before the window, and a drive whose encoder errs or whose command arrives changed sees another motion behind the
-/// same readings.
+/// Builds the states from which windows restart, as the drive's model interprets the record: hidden states follow the
+/// motion before the window. If the model has an encoder error or changes the command, the same readings mean another
+/// motion.
 class Restarts {
  public:
   Restarts(const sim::Drive& drive, const PreparedRecord& prepared, std::size_t stride)
@@ -26,14 +26,14 @@ class Restarts {
     if (shapes_) command_V_.resize(motion_.x.size());
   }
 
-  /// Every stride-th window must be asked for, in rising order.
+  /// Call it for every stride-th window, in ascending order.
   sim::DriveState at(std::size_t index) {
     const Window& window = prepared_.windows[index];
     const std::size_t row = window.begin;
     const bool shifts = errs_ || shapes_;
     if (memory_ == 0 && !shifts) return drive_.at(motion_.x[row], motion_.w[row]);
     const ShiftWeights* weights = shifts ? &prepared_.weights_of(window) : nullptr;
-    // Rows further back than the drive remembers need not be gone through.
+    // Rows beyond the drive's memory are skipped.
     std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
     if (shifts) needed = std::min(needed, weights->first);
     if (!begun_ || needed > row_) begin_at(needed, index);
@@ -44,8 +44,8 @@ class Restarts {
   }
 
  private:
-  /// Two masses are observed by a simulation of their own, which takes the command as the drive does and wants the
-  /// travel that is true; one mass follows the readings, and what the drive makes of them is shifted in afterwards.
+  /// Two masses are observed by a separate simulation, which takes the command as the drive does and needs the true
+  /// travel. One mass follows the readings, and the drive's corrections to them are added afterwards.
   double followed_travel(std::size_t row) const {
     return drive_.has_second_mass() ? drive_.travel_at_reading(motion_.x[row]) : motion_.x[row];
   }
@@ -58,8 +58,8 @@ class Restarts {
     keep();
   }
 
-  /// The shift of a window's readings needs rows beyond those where the next windows begin: their states are kept on
-  /// the way.
+  /// The correction of a window's readings needs rows beyond the beginnings of the next windows, so the states at these
+  /// are stored in passing.
   void keep() {
     while (next_kept_ < prepared_.windows.size() && prepared_.windows[next_kept_].begin == row_) {
       kept_.push_back(state_);
@@ -81,7 +81,8 @@ class Restarts {
     }
   }
 
-  /// Rest keeps what the motion before it has left: where a second mass stands in its gap, how a bristle is bent.
+  /// At rest, hidden states keep their value from the motion before: the position of a second mass in its gap, the
+  /// deflection of a bristle.
   std::size_t rows_back(std::size_t row) const {
     if (memory_ == 0) return 0;
     std::size_t back = std::min(row, memory_);
@@ -108,10 +109,10 @@ class Restarts {
   std::size_t stride_;
   std::size_t memory_;
   bool errs_, shapes_;
-  sim::DriveState state_;  ///< as the drive goes along the measured motion
+  sim::DriveState state_;  ///< of the drive along the measured motion
   std::size_t row_ = 0;
   bool begun_ = false;
-  std::deque<sim::DriveState> kept_;  ///< at the beginnings of windows not yet asked for
+  std::deque<sim::DriveState> kept_;  ///< at the beginnings of windows not yet requested
   std::size_t next_kept_ = 0;
   std::vector<double> reading_, command_V_;
 };

@@ -11,22 +11,22 @@
 
 namespace host {
 
-/// Predicted channels, one value a row; rows that no window reaches are left as they were.
+/// Predicted channels, one value per row; rows outside all windows are not changed.
 struct Prediction {
   std::vector<double> x;      ///< encoder reading without quantisation
   std::vector<double> w;      ///< tachometer reading without noise
   std::vector<double> table;  ///< travel of the table; empty unless the record has it
 };
 
-/// Predicts every `stride`-th window. `out` is resized when needed, so that it can be used again.
+/// Predicts every `stride`-th window. `out` is resized if needed, so it can be reused.
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride = 1);
 
 /// The restart states of every `stride`-th window: hidden states follow the record's motion from its start.
 std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared,
                                             std::size_t stride = 1);
 
-/// One window that a drive runs through from a state of its own. What the sensors would read goes to `x` and `w`, which
-/// have room for the window's length; the table's travel to `table`, where that is asked for.
+/// One window that a drive runs through from its own state. The sensors' readings are written to `x` and `w`, which
+/// must have the window's length; the table's travel to `table`, if that is given.
 struct WindowRun {
   const Window* window;
   sim::DriveState state;

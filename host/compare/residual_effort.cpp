@@ -11,10 +11,10 @@ namespace host {
 
 namespace {
 
-/// Turning points count once the axis has come back from them by so many steps of the encoder.
+/// A turning point counts once the axis has moved back from it by this many encoder steps.
 constexpr double kBelievedSteps = 3.0;
 
-/// Of every row: signed travel since the last reversal, and seconds of the rest before the present motion.
+/// For every row: signed travel since the last reversal, and duration of the rest before the present motion, s.
 struct History {
   std::vector<double> since_reversal, rest_s;
 
@@ -39,7 +39,7 @@ struct History {
   }
 };
 
-/// Over an average's own samples.
+/// Mean over the samples of one average.
 double mean_of(const std::vector<double>& values, std::size_t row, std::size_t step) {
   const std::size_t begin = row - step / 2;
   double sum = 0.0;
@@ -49,7 +49,7 @@ double mean_of(const std::vector<double>& values, std::size_t row, std::size_t s
 
 enum class Beyond { motion, inverse_model, speed_channel };
 
-/// What each row's measured motion needed beyond the model; NaN where the axis stands or turns.
+/// Torque or force that each row's measured motion needed beyond the model; NaN where the axis stands or reverses.
 std::vector<double> missing_by_row(const sim::DriveDescription& model, const PreparedRecord& prepared) {
   std::vector<double> missing(prepared.record->size(), std::nan(""));
   const ResidualSamples samples = residual_samples(model, prepared, 1);
@@ -72,7 +72,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
   const bool by_position = record.has_position();
   for (std::size_t place = 0; place < prepared.windows.size(); ++place) {
     const Window& window = prepared.windows[place];
-    // How far the motion is beyond its prediction; nothing at the restart.
+    // Difference between the motion and its prediction; zero at the restart.
     const auto beyond = [&](std::size_t row) {
       if (row == window.begin) return 0.0;
       return by_position ? motion.x[row] - prediction.x[row] : motion.w[row] - prediction.w[row];
@@ -89,7 +89,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
       return at;
     };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
-      // Where the axis stands or turns over the smoother rounds off what happens.
+      // Where the axis stands or reverses, the smoother rounds off the motion.
       if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
       const double slope = 0.5 * (beyond(row + step) - beyond(row - step));
@@ -115,7 +115,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
   }
 }
 
-/// Short windows that follow one another as one, so that an average has room between two restarts.
+/// Joins consecutive short windows, so that an average fits between two restarts.
 PreparedRecord in_long_windows(PreparedRecord prepared) {
   const auto times = static_cast<std::size_t>(std::lround(kWindow_s / prepared.window_s()));
   if (times < 2) return prepared;

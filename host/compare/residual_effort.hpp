@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Averages over 5 ms, which is what the smoother resolves, of the samples that move. All vectors of one length.
+/// Averages of the samples in motion over 5 ms, the resolution of the smoother. All vectors have the same length.
 struct ResidualEffort {
   double period_s = 0.005;
   std::vector<std::size_t> record, slot;  ///< the record, and the average's place in it in periods
@@ -17,17 +17,16 @@ struct ResidualEffort {
   std::vector<double> x, w, acceleration;
   std::vector<double> command_V;
   std::vector<double> since_reversal;  ///< travel since the last reversal, mm or m; negative in backward motion
-  std::vector<double> rest_s;          ///< how long the axis had stood before this motion
+  std::vector<double> rest_s;          ///< duration of the rest before this motion
   std::vector<double> temp_C;          ///< empty unless every record has it
 };
 
-/// Acceleration of the smoothed motion minus that of the prediction, times the inertia. Unlike the inverse model's, it
-/// is
-/// there for any model: bristles, gaps and second masses move as they do in a prediction.
+/// Acceleration of the smoothed motion minus that of the prediction, times the inertia. Unlike the residual of the
+/// inverse model, it exists for any model: bristles, gaps and second masses move as they do in a prediction.
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set);
 
-/// What the speed channel reads beyond the smoothed motion that the position shows, rad/s or m/s, in the place of the
-/// effort; empty where a record lacks one of the two.
+/// Speed channel minus the speed of the smoothed position, rad/s or m/s, instead of the torque or force; empty if a
+/// record lacks one of the two channels.
 ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

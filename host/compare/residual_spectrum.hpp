@@ -8,8 +8,8 @@
 namespace host {
 
 /// Amplitude spectral density, Nm/sqrt(Hz) or N/sqrt(Hz), one-sided, over Hz: Welch's method with Hann windows of 1.28
-/// s that overlap by half. Stretches in which the axis stands count as zero, and windows that stand for more than half
-/// are left out. Empty where no window is left.
+/// s that overlap by half. Intervals at rest count as zero, and windows at rest for more than half of their length are
+/// left out. Empty if no window remains.
 ScatterSeries spectrum_of_residual(const ResidualEffort& samples);
 
 /// The spectra of all views that have one, in one plot.

@@ -44,7 +44,7 @@ double sum_of_squares(const Values& values) {
 class Curve {
  public:
   Curve(const Values& coordinate, const Values& value, std::size_t bins) {
-    constexpr double kDrawnBy = 10.0;  // samples: neighbours are alike, so that ten are about one
+    constexpr double kDrawnBy = 10.0;  // samples: neighbours are correlated, so ten count as about one
     Values sorted = coordinate;
     std::ranges::sort(sorted);
     for (std::size_t bin = 1; bin < bins; ++bin) edges_.push_back(sorted[bin * sorted.size() / bins]);
@@ -62,7 +62,7 @@ class Curve {
 
   double operator()(double coordinate) const { return means_[bin_of(coordinate)]; }
 
-  /// The neighbouring bins round the strongest one that have its sign and half of its height.
+  /// The bins next to the strongest one that have its sign and at least half of its height.
   std::pair<double, double> stands_out() const {
     const auto top = static_cast<std::size_t>(std::ranges::max_element(weights_) - weights_.begin());
     const auto alike = [&](std::size_t bin) { return means_[bin] / means_[top] > 0.5; };
@@ -87,7 +87,7 @@ struct Half {
 
   explicit Half(ResidualEffort residual) : samples(std::move(residual)), value(clipped(samples.missing)) {}
 
-  /// The residual as a friction: positive where it resists.
+  /// The residual as friction: positive if it opposes the motion.
   Half resisting() const {
     Half half = *this;
     for (std::size_t k = 0; k < half.value.size(); ++k)
@@ -162,7 +162,7 @@ ResidualDependence on_period(const std::array<const Half*, 2>& halves, double re
   return result;
 }
 
-/// Part of the squared residual that the two windows before and behind a window foretell.
+/// Part of the squared residual that the windows before and after a window predict.
 double share_of_time(const Half& half) {
   const std::vector<std::size_t>& window = half.samples.window;
   const std::size_t windows = window.back() + 1;
@@ -171,7 +171,7 @@ double share_of_time(const Half& half) {
     sums[window[k]] += half.value[k];
     ++counts[window[k]];
   }
-  double product = 0.0, square = 0.0;  // of neighbouring means: how much of one the other foretells
+  double product = 0.0, square = 0.0;  // of neighbouring means: how much of one predicts the other
   Values foretold(windows);
   for (std::size_t k = 1; k + 1 < windows; ++k) {
     const double count = counts[k - 1] + counts[k + 1];
@@ -210,7 +210,7 @@ struct Spectrum {
       for (double& line : power) line /= total;
   }
 
-  /// How far a line and its two neighbours stand out of the median of those round them, as a part of the whole.
+  /// Power of a line and its two neighbours above the median of the lines around them, as a part of the total.
   double outstanding(std::size_t line) const {
     constexpr std::size_t kRound = 12;
     if (line < static_cast<std::size_t>(kLowest_Hz * kSegment_s) || line + 1 >= power.size()) return 0.0;
@@ -273,7 +273,7 @@ Correlation correlation(const ResidualEffort& samples, const Values& value, cons
   return result;
 }
 
-/// Speeds after short rests, then after longer ones, and so on: a friction that a rest has raised fades with speed.
+/// Speeds after short rests, then after longer ones, and so on, because friction that grew at rest fades with speed.
 Values speed_after_rests(const ResidualEffort& samples) {
   constexpr std::array kEdges_s{0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
   const double apart = 3.0 * std::ranges::max(samples.w, {}, [](double w) { return std::abs(w); });

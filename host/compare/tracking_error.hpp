@@ -17,22 +17,22 @@ struct TrackingPart {
   std::string with;  ///< "constant", "speed", "direction", "acceleration"
   double coefficient = 0.0;
   std::string unit;    ///< of the coefficient
-  double share = 0.0;  ///< part of the squared error that is gone with it, 0..1, taken in this order
+  double share = 0.0;  ///< part of the squared error that it explains, 0..1, in this order
 };
 
-/// Reference less measurement.
+/// Reference minus measurement.
 struct TrackingError {
   std::string path;
   std::string channel;  ///< x_mm, x_m, w_rad_s or v_m_s
   double rms = 0.0, largest = 0.0, largest_at_s = 0.0;
   std::vector<TrackingPart> parts;
-  std::vector<PeriodPeak> periods;  ///< of what the parts leave, along the travel; only where a position was recorded
+  std::vector<PeriodPeak> periods;  ///< of the remaining error along the travel; only if a position was recorded
 };
 
 /// Whether a record has a reference and its measurement, but no torque, force or command.
 bool has_reference_only(const Record& record);
 
-/// The records of these files, where none of them holds an effort; otherwise none. `data` is of their drive.
+/// The records of these files, if none of them has a command, torque or force; otherwise none. `data`: of their drive.
 std::vector<Record> tracking_records(const std::vector<std::string>& paths, const sim::DataSheet& data);
 
 /// Throws Failure(bad_input) where has_reference_only() does not hold.

@@ -16,9 +16,9 @@ struct DemoFigure {
   bool agrees() const { return found >= lowest && found <= highest; }
 };
 
-/// What one part of the demonstration found.
+/// Results of one part of the demonstration.
 struct DemoPart {
-  std::string sentence;  ///< the gist, in plain words
+  std::string sentence;  ///< a summary
   std::vector<DemoFigure> figures;
 };
 

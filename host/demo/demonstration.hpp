@@ -1,4 +1,4 @@
-// Everything that `make demo` shows, in one report and one list of figures.
+// All results of `make demo`, in one report and one list of figures.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ struct Demonstration {
   bool agrees() const;  ///< every figure agrees with its reference
 };
 
-/// Takes some seconds; shows its progress on a terminal. Throws Failure where an input is missing or a step refuses.
+/// Takes some seconds; shows its progress on a terminal. Throws Failure if an input is missing or a step is refused.
 Demonstration demonstrate(const DemonstrationInput& input);
 
 /// Figures and their reference values, one row each.

@@ -8,11 +8,11 @@
 
 namespace host {
 
-/// Two panels with one time axis: both signals, then measured less modelled. NaN in `modelled` leaves gaps.
+/// Two panels with one time axis: both signals, then measured minus modelled. NaN in `modelled` leaves gaps.
 TimePlot model_plot(const std::string& quantity, const std::string& unit, const std::vector<double>& t_s,
                     const std::vector<double>& measured, const std::vector<double>& modelled);
 
-/// Root mean square of measured less modelled, where there is a model.
+/// Root mean square of measured minus modelled, where there is a model.
 double rms_difference(const std::vector<double>& measured, const std::vector<double>& modelled);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// First part of the demonstration: a drive identified from a record that this code did not make.
+// First part of the demonstration: a drive identified from a record of an independent simulator.
 #pragma once
 
 #include <string>

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// `machine` is the plant, `identified` all that the controller knows of it.
+/// `machine` is the plant; the controller uses only `identified`.
 DemoPart show_tracking(const sim::DriveDescription& machine, const sim::DriveDescription& identified, Report& report);
 
 }  // namespace host

@@ -82,7 +82,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
       fail(ExitCode::protocol, "the board rejects a report without a reason");
     } else if (reply->type == firmware::reply_to(message.type) && reply->sequence == message.sequence) {
       return *reply;
-    }  // else an answer to a request that was given up: of no use any more
+    }  // else an answer to a request that was given up: not needed any more
   }
   const std::string others = other_users();
   fail(ExitCode::time_out,
@@ -107,7 +107,7 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
 std::string BoardClient::other_users() const { return host::other_users(link_->file()); }
 
 void BoardClient::keep_samples(const Message& message) {
-  constexpr std::size_t kMostWaiting = 100'000;  // more than a minute's worth: nobody takes them
+  constexpr std::size_t kMostWaiting = 100'000;  // more than a minute of samples: the program does not read them
   if (message.length <= 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of an impossible length");
   if (samples_.size() == kMostWaiting) fail(ExitCode::protocol, "the board sends samples that were not asked for");
   Samples samples;
@@ -154,7 +154,7 @@ std::size_t BoardClient::axis_count() {
 firmware::TimingPayload BoardClient::timing(bool begin_anew) {
   const firmware::TimingRequest anew{static_cast<std::uint8_t>(begin_anew ? 1 : 0)};
   const Message reply = request(MessageType::timing, anew);
-  firmware::TimingPayload timing;  // older boards' ends before the cycles
+  firmware::TimingPayload timing;  // on older boards it ends before the cycles
   std::memcpy(&timing, reply.payload.data(), std::min<std::size_t>(reply.length, sizeof timing));
   return timing;
 }

@@ -22,56 +22,56 @@
 
 namespace host {
 
-/// What a board says of itself and of each of its axes.
+/// A board's description of itself and of each of its axes.
 struct BoardState : firmware::BoardStatus {
   std::vector<firmware::AxisStatus> axis;
 };
 
 /// Newest first.
 struct FaultLog {
-  double run_h = 0;  ///< that the board has run in all
+  double run_h = 0;  ///< total running time of the board
   std::vector<firmware::LoggedFault> faults;
 };
 
-/// Functions throw Failure: no_such_device (board gone), time_out (no answer), protocol (damaged or senseless answer),
-/// refused (not in this state), device_fault, bad_input (a value that the board does not take).
+/// Functions throw Failure: no_such_device (board gone), time_out (no answer), protocol (damaged or impossible answer),
+/// refused (not in this state), device_fault, bad_input (a value that the board does not accept).
 class BoardClient {
  public:
   static constexpr std::chrono::milliseconds kPatience{1000};
 
-  /// `patience`: how long an answer may take, as a rule; a board answers within milliseconds.
+  /// `patience`: time-out of most answers; a board usually answers within milliseconds.
   explicit BoardClient(std::unique_ptr<ReportLink> link, std::chrono::milliseconds patience = kPatience);
 
   firmware::IdentityPayload identify();
   BoardState status();
   firmware::TimingPayload timing(bool begin_anew);
 
-  /// Throws Failure(protocol) when the board has another table of parameters than this program.
+  /// Throws Failure(protocol) if the board's table of parameters differs from this program's.
   void require_same_table();
 
-  /// Says its identity: asked once.
+  /// The board's identity, requested once.
   std::size_t axis_count();
 
   firmware::ParameterValues read_values(firmware::ValueSet set = firmware::ValueSet::active);
   /// Stages what differs from the active set (or everything), commits, reads back and compares by bits.
   void write_values(const firmware::ParameterValues& values, bool everything = false);
-  /// What lies in flash, keys that this program does not know included.
+  /// The values in flash, including keys that this program does not know.
   std::vector<firmware::StoredEntry> read_stored();
   void save();
 
   void enable(std::uint8_t axes);
-  /// False where one of them moves, or its amplifier still reports ready: they stay disabled.
+  /// False if an axis moves or its amplifier still reports ready; then all stay disabled.
   bool enable_at_rest(std::uint8_t axes);
   void disable(std::uint8_t axes);
   void stop();
   void jog(std::uint8_t axis, double velocity);
   void move(std::uint8_t axis, std::int64_t target_counts);
   void move_by(std::uint8_t axis, std::int64_t counts);
-  /// Looks for home; `here`: says that the axis stands there.
+  /// Looks for home; `here`: states that the axis stands there.
   void home(std::uint8_t axis, bool here);
   void clear_faults();
   void heartbeat();
-  /// Motion that another program commanded is this one's from now on.
+  /// Makes this program the owner of motion that another program commanded.
   void take_over();
   void restart();
 
@@ -81,7 +81,7 @@ class BoardClient {
   firmware::ExcitationStatePayload excitation_state();
 
   firmware::OpenPathPayload open_path(const firmware::OpenPathRequest& wanted);
-  /// Nodes as they lie in the report; false where the board has no room for them now.
+  /// Sends nodes in the format of the report; false if the board has no room for them now.
   bool path_nodes(std::span<const std::byte> nodes, firmware::PathStatePayload& state);
   firmware::PathStatePayload start_path();
   firmware::PathStatePayload path_rate(const firmware::PathRateRequest& wanted);
@@ -98,13 +98,13 @@ class BoardClient {
   firmware::CaptureReply stop_capture();
   /// Empty beyond the last row.
   std::optional<firmware::FaultRowPayload> fault_row(std::uint8_t axis, std::uint16_t row);
-  /// Empty on a board whose firmware has none.
+  /// Empty on a board whose firmware has no fault log.
   FaultLog fault_log();
 
-  /// 0 the program that runs, 1 and 2 the slots of images. Empty on a board that cannot be updated.
+  /// 0: the running program; 1 and 2: the slots of images. Empty on a board that cannot be updated.
   std::optional<firmware::SlotPayload> read_slot(std::uint8_t slot);
 
-  /// The reply to any other request. Throws where its status is not ok.
+  /// The reply to any other request. Throws if its status is not ok.
   firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);
 
   struct Samples {
@@ -113,11 +113,11 @@ class BoardClient {
   };
   std::chrono::milliseconds patience() const { return patience_; }
 
-  /// The board's clock (ReportLink::now): what is waited for on it is waited for with these.
+  /// The board's clock (ReportLink::now); time-outs of the board's actions use these functions.
   std::chrono::steady_clock::time_point now() const { return link_->now(); }
   void wait(std::chrono::milliseconds duration) { link_->wait(duration); }
 
-  /// Those that have come, or come within `patience`; empty otherwise.
+  /// Samples that have arrived, or arrive within `patience`; otherwise empty.
   std::optional<Samples> next_samples(std::chrono::milliseconds patience);
 
   std::string name() const { return link_->name(); }
@@ -135,8 +135,8 @@ class BoardClient {
 
   std::unique_ptr<ReportLink> link_;
   std::chrono::milliseconds patience_;
-  std::uint16_t client_;  ///< this program among those that talk to the board; never 0
-  std::uint8_t pass_;     ///< never comes back from the board, so nobody else learns of it; never 0
+  std::uint16_t client_;  ///< identifies this program among those that talk to the board; never 0
+  std::uint8_t pass_;     ///< the board never repeats it, so other programs cannot learn it; never 0
   std::uint16_t sequence_ = 0;
   std::size_t axis_count_ = 0;  ///< 0: not asked yet
   std::deque<Samples> samples_;

@@ -1,4 +1,4 @@
-// What a board says about itself, in words.
+// The state of a board, in words.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -22,26 +22,26 @@ struct AxisPlace {
   double value;
   const char* unit;  ///< travel_unit()
 };
-/// Nothing where the board's table of parameters is not known, or the axis is not fitted.
+/// Empty if the board's table of parameters is not known, or the axis is not fitted.
 std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
                                          const firmware::ParameterValues* values);
 
-/// What a board without brown-out reset lacks, with the remedy.
+/// Consequence of a missing brown-out reset, with the remedy.
 std::string brown_out_problem();
 
-/// Why the store keeps the drives disabled, with the remedy; empty while it does not.
+/// Why the store keeps the drives disabled, with the remedy; empty if it does not.
 std::optional<std::string> store_problem(const BoardState& status);
 
-/// Name, version, table, store, axes: format "axis-board/1". `values`: where the board has this axistool's table; then
-/// fitted axes tell their positions in mm, or m.
+/// Name, version, table, store, axes: format "axis-board/1". `values`: if the board has this axistool's table; then
+/// positions of fitted axes are in mm or m.
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
                           const BoardState& status, const firmware::TimingPayload& timing,
                           const firmware::ParameterValues* values = nullptr);
-/// The same for people.
+/// The same as text.
 std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status,
                        const firmware::TimingPayload& timing, const firmware::ParameterValues* values = nullptr);
 const char* fault_name(std::uint8_t fault);
-/// A fault and what went wrong besides, or empty.
+/// A fault and the second fault, if any; or empty.
 std::string fault_text(std::uint8_t fault, std::uint8_t second_fault);
 inline std::string fault_text(const firmware::AxisStatus& axis) { return fault_text(axis.fault, axis.second_fault); }
 

@@ -73,7 +73,7 @@ class CaptureRun {
       if (samples) last_row_ = now;
       steer(now);
       if (now - heard > kHeartbeat) {
-        settings_.jogs.empty() ? board_.heartbeat() : examine();  // the capture, too, is its living client's
+        settings_.jogs.empty() ? board_.heartbeat() : examine();  // a capture, too, needs its client's heartbeat
         heard = now;
       }
       if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))
@@ -89,7 +89,7 @@ class CaptureRun {
     }
   }
 
-  /// The jogs in turn, by the computer's clock: what the axis really did is in the record.
+  /// The jogs one after the other, timed by the computer's clock; the record shows the real motion.
   void steer(steady_clock::time_point now) {
     if (jog_ > settings_.jogs.size() || settings_.jogs.empty() || now < next_jog_) return;
     if (jog_ == settings_.jogs.size()) {
@@ -142,7 +142,7 @@ class CaptureRun {
     try {
       if (!settings_.jogs.empty()) board_.stop();
       board_.stop_capture();
-    } catch (const Failure&) {  // the board has gone: the first failure says so
+    } catch (const Failure&) {  // the board is gone, as the first failure reports
     }
   }
 
@@ -154,7 +154,7 @@ class CaptureRun {
   std::size_t wanted_ = 0, before_ = 0, after_ = 0;
   std::size_t trigger_column_ = 0;
   bool triggered_ = false;
-  bool was_short_ = false;  ///< a trigger is a crossing: some row was not beyond the level
+  bool was_short_ = false;  ///< a trigger is a crossing, so an earlier row must be on the other side of the level
   std::size_t jog_ = 0;
   steady_clock::time_point next_jog_;
   steady_clock::time_point last_row_;
@@ -242,7 +242,7 @@ Record capture_record(const Capture& capture, const CaptureSettings& settings, c
   const auto periods_a_second = static_cast<double>(std::llround(1.0 / capture.row_period_s));
   const bool is_whole_rate = std::abs(periods_a_second * capture.row_period_s - 1.0) < 1e-12;
   for (const std::uint32_t number : capture.number) {
-    const double rows = number - capture.number.front();  // dividing keeps 0.003 from becoming 0.0030000000000000001
+    const double rows = number - capture.number.front();  // division gives 0.003, not 0.0030000000000000001
     record.t_s.push_back(is_whole_rate ? rows / periods_a_second : rows * capture.row_period_s);
   }
   for (std::size_t i = 0; i < settings.channels.size(); ++i) {

@@ -1,4 +1,4 @@
-// A capture: rows at loop rate from a board, from before a trigger on, while the axis moves as it is told.
+// A capture: rows at loop rate from a board, beginning before a trigger, while the axis makes commanded jogs.
 #pragma once
 
 #include <cstdint>
@@ -34,18 +34,18 @@ JogStep parse_jog(const std::string& text);
 struct CaptureSettings {
   std::uint8_t axis = 0;
   sim::DriveKind kind = sim::DriveKind::rotary;
-  std::vector<firmware::Channel> channels;  ///< 1 to kWordsPerReport, no two alike
+  std::vector<firmware::Channel> channels;  ///< 1 to kWordsPerReport different ones
   std::uint16_t every = 1;                  ///< control periods from row to row
   double duration_s = 1.0;                  ///< from the first row, or from the trigger; 0: as long as the jogs last
   std::optional<Trigger> trigger;           ///< its channel is among `channels`
   double before_s = 0.0;                    ///< kept from before the trigger
   double patience_s = 60.0;                 ///< for the trigger
   double table_resolution = 0.0;            ///< of the scale on the table, mm (m): of the channel table_counts
-  std::vector<JogStep> jogs;                ///< in turn, from the first row on; the axis is enabled
+  std::vector<JogStep> jogs;                ///< one after the other, from the first row on; the axis is enabled
 };
 
 struct Capture {
-  std::vector<std::uint32_t> number;  ///< of each row; a jump is a loss
+  std::vector<std::uint32_t> number;  ///< of each row; a jump means lost rows
   std::vector<std::vector<double>> channel;
   double row_period_s = 0.0;
   std::optional<double> trigger_s;  ///< from the first row to the trigger; empty before it, too
@@ -53,28 +53,29 @@ struct Capture {
   std::uint32_t dropped_by_board = 0;
 };
 
-/// Told the capture so far, some hundred times a second; false ends it, and what has come is the capture.
+/// Called some hundred times a second with the capture so far. If it returns false, the capture ends with the rows so
+/// far.
 using CaptureWatch = std::function<bool(const Capture&)>;
 
-/// Rows of one report of so many channels. Throws Failure(protocol) for a part of one.
+/// Rows in one report, with this number of channels. Throws Failure(protocol) for an incomplete row.
 std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels);
 
 /// Appends a row; its words stand in the order of the channels' numbers.
 void append_row(Capture& capture, const std::vector<firmware::Channel>& channels, ChannelScale& scale,
                 std::uint32_t number, const std::uint32_t* words);
 
-/// Of rows by their numbers: how many are missing between the first and the last.
+/// Number of rows missing between the first and the last, by the rows' numbers.
 std::size_t lost_rows(const std::vector<std::uint32_t>& numbers);
 
 /// Throws Failure(refused) for jogs beyond the axis's limits, Failure(usage) for more rows than USB carries.
 void require_capturable(const firmware::ParameterValues& values, const CaptureSettings& settings);
 
-/// Rows that were lost are a failure, of code protocol: `where` names what has the gap.
+/// Throws Failure(protocol) if rows were lost; `where` names the file with the gap.
 void require_no_loss(const Capture& capture, const std::string& where);
 
 /// Runs a capture. Throws Failure: time_out (no trigger), refused (ended before the trigger, or before a row), what
-/// BoardClient throws, device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and
-/// the board to end the capture.
+/// BoardClient throws, device_fault when the axis stops during the jogs. However it ends, the axis is stopped and the
+/// board's capture ended.
 Capture run_capture(BoardClient& board, const CaptureSettings& settings, const CaptureWatch& watch = {});
 
 /// As a record: t_s from the rows' numbers, 0 at the first row.

@@ -1,4 +1,4 @@
-// The channels of a capture by name, and from a board's words to numbers in physical units.
+// The channels of a capture by name, and the conversion of a board's words to physical units.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace host {
 
-/// As the columns of records are called: "u_V", "x_mm" ("x_m"), "w_rad_s" ("v_m_s") …
+/// Names, as in the columns of records: "u_V", "x_mm" ("x_m"), "w_rad_s" ("v_m_s") …
 std::string channel_name(firmware::Channel channel, sim::DriveKind kind);
 
-/// Throws Failure(usage) with the names that there are.
+/// Throws Failure(usage) listing the known names.
 firmware::Channel channel_named(std::string_view name, sim::DriveKind kind);
 
-/// The first, and what is recorded unless somebody chooses: command, position, speed, and their references.
+/// The default channels: command, position, speed, and their references.
 std::vector<firmware::Channel> usual_channels(bool tachometer_fitted);
 
 /// Turns words into V, mm (m), rad/s (m/s). Positions are extended from their low words, so rows must come in order.
 class ChannelScale {
  public:
-  /// `axis`: the board's parameters; `counts_near`: the encoder's counts about when the first row is taken;
-  /// `table_resolution`: of the scale on the table, mm (m), where there is one.
+  /// `axis`: the board's parameters; `counts_near`: approximate encoder counts at the first row; `table_resolution`: of
+  /// the scale on the table, mm (m), where there is one.
   ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near,
                double table_resolution = 0.0);
 
@@ -38,7 +38,7 @@ class ChannelScale {
   double length_, velocity_, volts_;  ///< units of a fixed-point board's scalars
   double encoder_resolution_, dac_resolution_, table_resolution_;
   std::int64_t table_ = 0;
-  std::int64_t counts_, reference_;  ///< last; of the reference in 1/256 counts
+  std::int64_t counts_, reference_;  ///< latest values; the reference in 1/256 counts
 };
 
 }  // namespace host

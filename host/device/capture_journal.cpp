@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kEvery_s = 0.5;
 
-/// The rows from `begin` on, behind the first one, which the times count from.
+/// The rows from `begin` on, after the first row, from which times are counted.
 Capture tail_of(const Capture& capture, std::size_t begin) {
   const auto take = [begin](const auto& all, auto& some) {
     some.reserve(all.size() - begin + 1);

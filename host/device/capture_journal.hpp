@@ -1,4 +1,4 @@
-// A capture on disk while it runs: what has come is not lost with the program, or the computer's power.
+// A capture on disk while it runs, so that its rows survive a crash of the program or a power failure of the computer.
 #pragma once
 
 #include <string>
@@ -7,23 +7,23 @@
 
 namespace host {
 
-/// OUTPUT.unfinished: a record that grows twice a second, until the whole one takes its place.
+/// OUTPUT.unfinished: a record that is extended twice a second, until the complete one replaces it.
 class CaptureJournal {
  public:
-  /// Nothing is written before there are rows. `settings` outlives this.
+  /// Nothing is written before the first row. `settings` outlives this.
   CaptureJournal(const std::string& output, const CaptureSettings& settings, std::string drive);
   CaptureJournal(const CaptureJournal&) = delete;
   CaptureJournal& operator=(const CaptureJournal&) = delete;
   ~CaptureJournal();
 
-  /// Appends the rows that have come since, from the trigger on where one is awaited. Throws Failure: permission,
-  /// bad_input (disk full).
+  /// Appends the new rows, if a trigger is set only from the trigger on. Throws Failure: permission, bad_input (disk
+  /// full).
   void keep(const Capture& capture);
 
-  /// The whole record is written.
+  /// Call it once the complete record is written.
   void remove();
 
-  /// Names what is kept, for the message of a failure; empty: nothing.
+  /// Describes the kept rows, for the message of a failure; empty if there are none.
   std::string remark() const;
 
  private:

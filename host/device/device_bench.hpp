@@ -1,4 +1,4 @@
-// How fast and how reliable the way to a board is.
+// Speed and reliability of the connection to a board.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ struct DeviceBench {
 };
 
 /// Times everything with the parameters that the board has; nothing changes. Drives must be disabled.
-/// `open` makes the way to the board; `progress` is told the seconds of the capture so far.
+/// `open` opens the connection; `progress` is called with the seconds of the capture so far.
 DeviceBench bench_device(const std::function<std::unique_ptr<ReportLink>()>& open, double capture_s,
                          const std::function<void(double)>& progress = {});
 

@@ -81,7 +81,7 @@ class Examination {
     }
   }
 
-  /// A full-speed endpoint that is polled each millisecond answers within two or three.
+  /// A full-speed endpoint that is polled every millisecond answers within two or three milliseconds.
   void exchange() {
     constexpr int kExchanges = 100;
     std::vector<double> times;

@@ -1,4 +1,4 @@
-// What could be wrong with a board and the way to it, each with its remedy.
+// Checks of a board and its connection, each with a remedy.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ struct DeviceCheck {
 /// How long Linux takes to open a board over hidraw.
 DeviceCheck check_opening();
 
-/// Asks the board about everything that it knows, and tries the way to it for a second. Changes nothing.
+/// Reads the board's complete state, and tests the connection for a second. Changes nothing.
 std::vector<DeviceCheck> check_device(BoardClient& board);
 
 }  // namespace host

@@ -112,7 +112,7 @@ bool is_open_loop(const Excitation& excitation) {
   return excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
 }
 
-/// Closes the loop where the excitation needs it closed; opens it again behind it, if it was open.
+/// Closes the loop if the excitation needs it; afterwards opens it again if it was open before.
 class Loop {
  public:
   Loop(BoardClient& board, std::uint8_t axis, bool is_needed)
@@ -149,7 +149,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
   outcome.settings.kind = scale.kind;
   outcome.settings.channels = usual_channels(scale.has_tachometer);
   if (count > 1 || is_open_loop(make(0, 0.0)))
-    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference, or not throughout
+    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference, or not in all rows
   const firmware::AxisStatus status = board.status().axis.at(axis);
   if (scale.table_resolution > 0.0 && (status.flags & firmware::kAxisScale) != 0)
     outcome.settings.channels.push_back(Channel::table_counts);
@@ -173,7 +173,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     firmware::ExcitationRequest request = excitation.request;
     request.axis = axis;
     if (!is_capturing) board.start_capture(capture);
-    is_capturing = true;  // from here on it is this program's to stop
+    is_capturing = true;  // from here on this program must stop it
     board.start_excitation(request);
     firmware::ExcitationStatePayload state;
     bool is_asked = false;
@@ -196,7 +196,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     outcome.state = state;
     return state.end == static_cast<std::uint8_t>(ExcitationEnd::completed) && !stop();
   };
-  // An axis that has just stopped is not taken for one that stands.
+  // An axis that has just stopped does not yet count as standing.
   const auto rest = [&] {
     const std::size_t wanted = outcome.capture.number.size() + static_cast<std::size_t>(kRest_s * scale.rate_Hz);
     while (outcome.capture.number.size() < wanted && rows.fetch(milliseconds(500))) continue;
@@ -211,7 +211,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     try {
       board.stop_excitation();
       if (is_capturing) board.stop_capture();
-    } catch (const Failure&) {  // the board has gone: the first failure says so
+    } catch (const Failure&) {  // the board is gone, as the first failure reports
     }
     throw;
   }

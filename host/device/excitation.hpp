@@ -1,4 +1,4 @@
-// Experiments on an axis: what excites it, the box that the board keeps it in, and the record of all samples.
+// Experiments on an axis: the excitation, the box that the board enforces, and the record of all samples.
 #pragma once
 
 #include <array>
@@ -15,26 +15,26 @@
 
 namespace host {
 
-/// What the board itself enforces, from where the axis stands at the beginning. Every value is > 0.
+/// Limits that the board itself enforces, relative to the axis's initial position. Every value is > 0.
 struct ExcitationLimits {
   double travel = 0.0;  ///< width of the window, half of it to either side; mm (m)
   double speed = 0.0;   ///< mm/s (m/s)
-  double volts = 0.0;   ///< of the command in open loop, or of what is added to a controller's output
+  double volts = 0.0;   ///< of the command in open loop, or of the part added to a controller's output
   double time_s = 0.0;
 };
 
 /// "travel=20,speed=100,volts=3,time=5"; a value may carry its unit (mm, m, um, mm/s, m/s, V, s). Throws
-/// Failure(usage), and Failure(refused) for a box that lacks a side.
+/// Failure(usage), and Failure(refused) for a box that lacks a limit.
 ExcitationLimits parse_box(std::string_view text, sim::DriveKind kind);
 
-/// "amplitude=2", "hold=0.3": by name; and the plain numbers in their order.
+/// "amplitude=2", "hold=0.3": by name; and numbers without a name, in their order.
 struct ExcitationNumbers {
   std::vector<double> list;
   std::map<std::string, double> named;
 };
 ExcitationNumbers parse_numbers(const std::vector<std::string>& words);
 
-/// What turns physical units into the board's counts, converter steps and samples.
+/// Factors from physical units to the board's counts, converter steps and samples.
 struct ExcitationScale {
   sim::DriveKind kind = sim::DriveKind::rotary;
   double encoder_resolution = 0.0;  ///< mm (m) a count
@@ -46,20 +46,20 @@ struct ExcitationScale {
   double acceleration = 0.0, jerk = 0.0;  ///< limits of references, mm/s^2, mm/s^3 (m); of a closed loop
 };
 
-/// As the board's parameters say; of an axis that is not fitted, neither lead nor limits.
+/// From the board's parameters; without lead and limits if the axis is not fitted.
 ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind);
 
 struct Excitation {
   firmware::ExcitationRequest request;
   std::vector<firmware::ExcitationEntriesRequest::Entry> entries;
-  std::map<std::string, std::string> header;  ///< of the record: what analysis needs to know
+  std::map<std::string, std::string> header;  ///< of the record: data for the analysis
   std::string summary;                        ///< a line for the user
 };
 
-/// What a board is loaded with before the excitation starts.
+/// Entries that are loaded into a board before the excitation starts.
 std::vector<firmware::ExcitationEntriesRequest> entry_requests(const Excitation& excitation, std::uint8_t axis);
 
-/// The kinds of `axistool excite`, with what each does and its numbers.
+/// The kinds of `axistool excite`, with description and numbers.
 struct ExcitationKindText {
   std::string_view name, does, numbers;
 };
@@ -79,17 +79,17 @@ struct ExcitationOutcome {
 /// Why it ended, in words.
 std::string_view end_name(firmware::ExcitationStatePayload state);
 
-/// Runs it and captures every sample, from shortly before until the axis stands. In closed loop an axis whose loop is
-/// open is enabled first, and disabled afterwards. `values`: with the scales of the drive. Throws what BoardClient
-/// throws; then the board is told to stop.
+/// Runs it and captures every sample, from shortly before the start until the axis stands. For closed loop the axis is
+/// enabled first if its loop is open, and disabled afterwards. `values`: with the scales of the drive. Throws what
+/// BoardClient throws; then the board is stopped.
 ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
                                  const firmware::ParameterValues& values, const ExcitationScale& scale,
                                  const std::function<bool()>& stop,
                                  const std::function<void(std::size_t)>& progress = {});
 
 /// Several, one after the other, in one capture, up to the first that does not complete. `make(index, offset)`: the
-/// excitation of an axis that stands `offset` (mm or m) from where the first one found it. The state is that of the
-/// last, with the time of all and the farthest of all from there.
+/// excitation of an axis that stands at `offset` (mm or m) from its initial position. The state is that of the last
+/// one, with the total time and the farthest distance from the initial position.
 ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::size_t count,
                                   const std::function<Excitation(std::size_t, double)>& make,
                                   const firmware::ParameterValues& values, const ExcitationScale& scale,

@@ -1,4 +1,4 @@
-// From a kind of experiment, its numbers and its box to what the board is asked for.
+// Converts a kind of experiment, its numbers and its box to the board's request.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -152,8 +152,8 @@ class Designer {
     made_.request.amplitude = std::max(made_.request.amplitude, std::abs(static_cast<float>(value)));
   }
 
-  /// Several sizes: the smaller ones, which friction takes more of, tell it from inertia. None is so much smaller than
-  /// the one before that it could not brake what that accelerated.
+  /// Steps of several sizes, because friction is a larger part of the small ones, which separates it from inertia. No
+  /// step is so small that it could not brake the motion from the step before.
   void steps() {
     enter(ExcitationKind::train, ExcitationInput::open_loop);
     std::vector<double> levels = numbers_.list;
@@ -210,7 +210,7 @@ class Designer {
     made_.header["excitation_ride"] = fmt::format("{:g}", ride);
   }
 
-  /// The way of a stop from a steady jog within the limits, and of the samples until it begins.
+  /// Travel of a stop from a steady jog within the limits, including the samples until it begins.
   void put_margin(double speed) {
     if (!(scale_.acceleration > 0.0) || !(scale_.jerk > 0.0)) return;
     const double stop = speed * speed / (2.0 * scale_.acceleration) + speed * scale_.acceleration / (2.0 * scale_.jerk);
@@ -239,8 +239,8 @@ class Designer {
     return scale_.kind == sim::DriveKind::rotary ? "mm" : "m";
   }
 
-  /// Odd harmonics only, and not all of those: what the others show is the drive's nonlinearity. Phases are random;
-  /// the whole is scaled to its peak.
+  /// Only some of the odd harmonics: the other lines show the drive's nonlinearity. Phases are random; the signal is
+  /// scaled to its peak.
   void multisine() {
     enter(ExcitationKind::multisine, chosen_input());
     put_amplitude(0.5 * box_.volts);

@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// What the capture shows of encoder and tachometer: least squares of the travel over the angle of each sample.
+/// Encoder against tachometer in the capture: least squares of the travel over the angle of each sample.
 std::string disagreement(const ExcitationOutcome& outcome, double lead) {
   const Record record = capture_record(outcome.capture, outcome.settings, "");
   const std::string general = "encoder and tachometer show different motion";

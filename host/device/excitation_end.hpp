@@ -1,4 +1,4 @@
-// An excitation that did not end by itself, as an error.
+// Errors for an excitation that did not complete.
 #pragma once
 
 #include <string>
@@ -7,9 +7,8 @@
 
 namespace host {
 
-/// Throws Failure(device_fault) with cause and remedy where the axis has a fault, Failure(refused) where it was
-/// stopped, left its box or did not move, Failure(protocol) where rows were lost: with what to do. `kept`: where the
-/// record is, in words; may be empty.
+/// Throws, with the remedy, Failure(device_fault) if the axis has a fault, Failure(refused) if it was stopped, left its
+/// box or did not move, Failure(protocol) if rows were lost. `kept`: the place of the record, in words; may be empty.
 void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOutcome& outcome,
                        const std::string& kept);
 

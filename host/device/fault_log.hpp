@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// Oldest first, a line each; empty where nothing was logged. `values`: the board's, if this program knows its table;
-/// without them positions are counts.
+/// One line per entry, oldest first; empty if nothing was logged. `values`: the board's, if this program knows its
+/// table; without them positions are in counts.
 std::string fault_log_text(const FaultLog& log, const firmware::ParameterValues* values);
 nlohmann::json fault_log_json(const FaultLog& log, const firmware::ParameterValues* values);
 

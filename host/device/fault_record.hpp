@@ -1,4 +1,4 @@
-// What an axis kept of the time before a fault stopped it, as a record.
+// The rows that an axis kept from before its fault, as a record.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ constexpr const char* kBootloader = "0483:df11";  // STMicroelectronics' DFU boo
 constexpr const char* kFlashStart = "0x08000000";
 // How the STM32F405's bootloader describes 1 MB of flash (RM0090, table 5).
 constexpr const char* kSectors = "04*016Kg,01*064Kg,07*128Kg";
-constexpr milliseconds kResetPulse{20};        // the pin wants 20 us (datasheet, table 47); RC on the board: 1 ms
+constexpr milliseconds kResetPulse{20};        // the pin needs 20 us (datasheet, table 47); RC on the board: 1 ms
 constexpr milliseconds kBootloaderStart{300};  // USB bootloader ready: AN2606, section "STM32F40xxx"; plus enumeration
 constexpr milliseconds kSettle{1};
 constexpr const char* kNew = ".new";      // file of the option bytes to write, beside that of those read
@@ -125,7 +125,7 @@ void check_chip(const FlashStep& step, const CommandResult& result) {
         "another chip than an STM32F405 with 1 MB is connected (its flash sectors differ); nothing was written");
 }
 
-/// Of the option bytes that were read; says whether the level of the brown-out reset is right.
+/// Whether the option bytes that were read have the right level of the brown-out reset.
 bool has_brown_out_level(const std::string& options) {
   if (options.size() < 2)
     throw Failure(ExitCode::protocol, "the option bytes cannot be read: try another cable or port, and flash again");
@@ -133,7 +133,8 @@ bool has_brown_out_level(const std::string& options) {
   return (static_cast<unsigned char>(options[0]) & kBrownOutField) == 0;
 }
 
-/// The bootloader takes option bytes over by a reset, in which dfu-util may lose it: what counts is read back.
+/// The bootloader activates option bytes by a reset, in which dfu-util may lose the connection, so the bytes are read
+/// back.
 void set_brown_out(const FlashRequest& request, const FlashActions& actions) {
   std::string options = actions.read_options();
   if (has_brown_out_level(options)) return;

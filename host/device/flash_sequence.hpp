@@ -1,4 +1,4 @@
-// What flashing a board takes, step by step: lines to drive, pauses to keep, programs to run.
+// The steps of flashing a board: lines to drive, pauses, and programs to run.
 #pragma once
 
 #include <chrono>
@@ -27,10 +27,10 @@ struct FlashRequest {
   FlashWay way = FlashWay::dfu;
   std::string image;               ///< .bin
   std::size_t image_size = 0;      ///< bytes
-  std::optional<GpioWiring> gpio;  ///< empty: somebody else has put the board into its bootloader
+  std::optional<GpioWiring> gpio;  ///< empty: the board is already in its bootloader
   std::string serial_port;         ///< way serial
   std::string probe;               ///< way probe: serial number; empty if there is only one
-  std::string read_back;           ///< file for what is read back, way dfu
+  std::string read_back;           ///< file for the image that is read back, for dfu
   std::string options;             ///< likewise for the option bytes
 };
 
@@ -44,21 +44,21 @@ struct FlashStep {
 };
 
 /// The whole sequence. Over USB and by a probe it also sets the level of the chip's brown-out reset, once, unless read
-/// protection is on; the serial bootloader is left to the image alone. After a failure between its steps,
-/// recovery_steps() lets the board start what it has.
+/// protection is on; over the serial bootloader only the image is written. After a failure between its steps,
+/// recovery_steps() lets the board start its present image.
 std::vector<FlashStep> flash_steps(const FlashRequest& request);
 std::vector<FlashStep> recovery_steps(const FlashRequest& request);
 
-/// One line for people: what a dry run prints.
+/// One line of text, as a dry run prints it.
 std::string describe(const FlashStep& step, const FlashRequest& request);
 
-/// What a sequence acts on. Tests hand in recorders.
+/// The actions of a sequence. Tests pass recorders.
 struct FlashActions {
   std::function<void(bool)> set_boot0, set_reset;
   std::function<void(std::chrono::milliseconds)> pause;
   std::function<CommandResult(const std::vector<std::string>&)> run;
   std::function<bool()> read_back_equals;
-  std::function<std::string()> read_options;  ///< takes away the file of the last upload: dfu-util replaces none
+  std::function<std::string()> read_options;  ///< removes the last upload's file: dfu-util replaces none
   std::function<void(const std::string& file, const std::string& bytes)> write_options;
   std::function<void(const std::string&)> tell;
 };

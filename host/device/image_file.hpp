@@ -1,4 +1,4 @@
-// Firmware images on disk: what they say about themselves, and whether they may go onto a board.
+// Firmware images on disk: their header, and whether a board accepts them.
 #pragma once
 
 #include <algorithm>
@@ -12,25 +12,25 @@
 
 namespace host {
 
-/// What `make firmware` leaves for a board with boot code holds that code first, then the image.
+/// For a board with boot code, the file from `make firmware` holds that code first, then the image.
 struct ImageFile {
   std::string path;
   std::vector<std::byte> bytes;  ///< all of the file
-  std::size_t begin = 0;         ///< of the image, in the file: behind the boot code, or 0 without
+  std::size_t begin = 0;         ///< of the image in the file: after the boot code; 0 without boot code
   firmware::ImageHeader header;
   firmware::ImageState state = firmware::ImageState::no_header;
 
-  /// Without boot code, and without what may stand behind it.
+  /// The image alone, without boot code and trailing bytes.
   std::span<const std::byte> image() const {
     const auto behind_boot = std::span(bytes).subspan(begin);
     return behind_boot.first(std::min<std::size_t>(header.image_size, behind_boot.size()));
   }
 };
 
-/// Throws Failure (bad_input) for a file that cannot be read or holds no image of ours; a damaged image is returned,
-/// and its state says so.
+/// Throws Failure (bad_input) for a file that cannot be read or holds no image of this project. A damaged image is
+/// returned, with the damage in its state.
 ImageFile read_image_file(const std::string& path);
-/// Likewise of bytes that are at hand; `path` is for messages.
+/// The same from bytes in memory; `path` is for messages.
 ImageFile parse_image_file(std::string_view bytes, const std::string& path);
 
 /// Throws Failure (bad_input) for an image that is damaged or for another board or chip.

@@ -17,9 +17,9 @@ namespace {
 using firmware::MessageType;
 using firmware::SlotState;
 
-/// Three erases of a sector (STM32F405 datasheet, table 40: 2 s each at most), and a copy of the image that runs.
+/// Three erases of a sector (STM32F405 datasheet, table 40: 2 s each at most), and a copy of the running image.
 constexpr std::chrono::milliseconds kBeginPatience{15'000};
-/// A block is programmed within a millisecond, but the fault log may just erase a sector.
+/// A block is programmed within a millisecond, but the fault log may be erasing a sector.
 constexpr std::chrono::milliseconds kBlockPatience{5000};
 constexpr std::array<std::string_view, 5> kSlotStates{"empty", "incomplete", "offered", "tried", "healthy"};
 constexpr std::array<const char*, 2> kSlotNames{"A", "B"};
@@ -138,7 +138,7 @@ BoardClient restart_and_reopen(BoardClient board, const std::function<BoardClien
     board.identify();  // within this process the link outlives a restart
     return board;
   } catch (const Failure&) {
-    const BoardClient gone = std::move(board);  // nobody else could open it
+    const BoardClient gone = std::move(board);  // otherwise no other program could open it
   }
   for (;;) {
     try {

@@ -14,7 +14,7 @@
 
 namespace host {
 
-/// The program that runs, and what the slots hold.
+/// The running program and the contents of the slots.
 struct ImageSlotsSeen {
   firmware::SlotPayload program;
   std::vector<firmware::SlotPayload> slots;  ///< A, B
@@ -29,7 +29,7 @@ std::optional<ImageSlotsSeen> read_slots(BoardClient& board);
 std::string slots_text(const ImageSlotsSeen& seen);
 nlohmann::json slots_json(const ImageSlotsSeen& seen);
 
-/// Bytes that have been sent, of all.
+/// Bytes sent, and bytes in total.
 using UpdateProgress = std::function<void(std::size_t sent, std::size_t size)>;
 
 /// Sends the image into the slot that does not run, and has the board check it. The board starts it at its next
@@ -37,7 +37,7 @@ using UpdateProgress = std::function<void(std::size_t sent, std::size_t size)>;
 /// the image, with the cause), device_fault (its flash fails), and as BoardClient does.
 void send_image(BoardClient& board, const ImageFile& file, const UpdateProgress& progress);
 
-/// Of the image that runs: it stays.
+/// Confirms the running image, which becomes permanent.
 void confirm_image(BoardClient& board);
 
 /// Restarts the board and opens it again as soon as it answers: `open` may throw until then. A board that restarts a

@@ -20,7 +20,7 @@ SupervisorState state_of(const BoardState& status, std::size_t axis) {
   return static_cast<SupervisorState>(status.axis.at(axis).state);
 }
 
-/// Asks until `done`, the board's heartbeat on the way.
+/// Requests the status until `done`, which also serves as heartbeat.
 template <typename Done>
 bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done done) {
   const auto deadline = board.now() + patience;
@@ -38,7 +38,7 @@ bool for_all(std::uint8_t mask, Each each) {
   return true;
 }
 
-/// Throws once the motion is another program's: it is no longer this one's to end.
+/// Throws once another program owns the motion: then this program must not end it.
 void require_own_motion(const BoardState& status) {
   if ((status.flags & firmware::kBoardOthers) != 0)
     throw Failure(ExitCode::refused, "another program has taken over the motion");
@@ -50,13 +50,13 @@ bool rests(const BoardState& status, std::uint8_t axis) {
   return (status.axis.at(axis).flags & firmware::kAxisAtRest) != 0;
 }
 
-/// However long it takes: limits of acceleration may be low. A silent board ends it.
+/// Without time-out, because limits of acceleration may be low. A silent board ends the wait.
 void stop_and_wait(BoardClient& board, std::uint8_t axis) {
   board.stop();
   ask_until(board, std::chrono::hours(1), [&](const auto& status) { return rests(status, axis); });
 }
 
-/// Of a motion that ends by itself.
+/// For a motion that ends by itself.
 void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
   bool interrupted = false;
   board.wait(kHeartbeat);  // it begins with the next control period
@@ -67,7 +67,8 @@ void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bo
   if (interrupted) stop_and_wait(board, axis);
 }
 
-/// By how much to move the switch, which the fault's own text cannot say: half a turn before the pulse is best.
+/// The distance by which to move the switch, which the fault's own text cannot state: half a turn before the pulse is
+/// best.
 [[noreturn]] void refuse_switch(BoardClient& board, std::uint8_t axis) {
   const firmware::ParameterValues all = board.read_values();
   const firmware::AxisValues values = all.axis(axis);
@@ -102,7 +103,7 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
       return state_of(status, axis) != SupervisorState::self_test;
     });
   });
-  // An axis that was disabled a moment ago may coast still.
+  // An axis that was just disabled may still coast.
   if (!ask_until(board, std::chrono::seconds(2), [&](const auto&) { return board.enable_at_rest(mask); }))
     board.enable(mask);
   // The longest that an amplifier and a brake may take by their parameters, and a little more.

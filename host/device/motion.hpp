@@ -1,4 +1,4 @@
-// Commanded motion, with the heartbeat that a board asks for meanwhile.
+// Commanded motion, with the heartbeat that a board requires meanwhile.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// How often a board is told that its host lives: a fifth of the silence that it suffers while an axis moves.
+/// Interval of heartbeats: a fifth of the silence that a board tolerates while an axis moves.
 inline constexpr std::chrono::milliseconds kHeartbeat{20};
 
 /// Enables the axes of `mask` and waits until their loops are closed, a self-test before included. Throws
@@ -23,21 +23,22 @@ bool are_enabled(BoardClient& board, std::uint8_t mask);
 void disable_and_wait(BoardClient& board, std::uint8_t mask);
 
 /// Throws Failure(refused) naming the limit where `velocity` (mm/s or m/s) is beyond the axis's limits.velocity: the
-/// board would go slower than it was told.
+/// board would move more slowly than commanded.
 void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity);
 
-/// Throws Failure(answer_is_no) where the last jog, move or homing ended because the touch probe met something.
+/// Throws Failure(answer_is_no) if the last jog, move or homing ended because the touch probe made contact.
 void require_no_contact(BoardClient& board, const firmware::ParameterValues& values);
 
-/// Jogs for a time, until the board ends it or until `stop` says so, then slows down to rest. Throws
-/// Failure(device_fault) when the axis faults; whatever ends it, the axis is told to stop.
+/// Jogs for a time, until the board ends it or until `stop` returns true, then slows down to rest. Throws
+/// Failure(device_fault) if the axis has a fault. However it ends, the axis is stopped.
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
              const std::function<bool()>& stop);
 
-/// Lets an enabled axis look for home and waits until it has found it, or until `stop` says so.
+/// Homes an enabled axis and waits until home is found, or until `stop` returns true.
 void home_and_wait(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop);
 
-/// Moves to a target, or `relative` by so many counts, and waits until the axis rests there, or until `stop` says so.
+/// Moves to a target, or if `relative` by this many counts, and waits until the axis rests there, or until `stop`
+/// returns true.
 void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t counts, bool relative,
                    const std::function<bool()>& stop);
 

@@ -1,11 +1,12 @@
-// Overrides of a path that runs: feeds and rapids apart, as shares of what was planned.
+// Overrides of a running path: separate ones for feeds and rapids, as shares of the planned speed.
 #pragma once
 
 #include <algorithm>
 
 namespace host {
 
-/// The plan holds the limits at its own speed, so nothing here is faster: a feed above 100 % is planned so beforehand.
+/// The plan keeps the limits at its own speed, so overrides are at most 100 %: a faster feed must be planned
+/// beforehand.
 class PathOverride {
  public:
   static constexpr int kMost = 1000, kStep = 100, kLeast = 100;  ///< per mille; 0 is a feed hold
@@ -18,7 +19,7 @@ class PathOverride {
     if (key == '<') change(rapid_, -kStep);
   }
 
-  /// For the motion that the path is in, per mille.
+  /// Of the present motion of the path, per mille.
   int permille(bool is_rapid) const { return is_rapid ? rapid_ : feed_; }
 
  private:

@@ -23,10 +23,10 @@ using firmware::PathStatePayload;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kRound{10};       // a tenth of the silence that a board suffers while it moves
-constexpr int kReportsARound = 4;        // of rows, which never end: two milliseconds each at most
-constexpr double kHeadStart_s = 0.5;     // of nodes, before the board sets out
-constexpr double kMostRows_Hz = 1000.0;  // a cable takes so many rows of two axes beside the nodes
+constexpr milliseconds kRound{10};       // a tenth of the silence that a board tolerates while it moves
+constexpr int kReportsARound = 4;        // of rows, which arrive continuously: at most two milliseconds each
+constexpr double kHeadStart_s = 0.5;     // of nodes, before the board starts
+constexpr double kMostRows_Hz = 1000.0;  // a cable carries this many rows of two axes beside the nodes
 
 firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative,
                                        firmware::ProbeStop probe = firmware::ProbeStop::none) {
@@ -61,7 +61,7 @@ std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathSc
   return bytes;
 }
 
-/// PathRows of all axes as they come.
+/// Collects PathRows of all axes as they arrive.
 class PathRows {
  public:
   PathRows(BoardClient& board, const firmware::ParameterValues& values, const PathScale& scale, PathCapture& capture)
@@ -112,13 +112,13 @@ class PathRows {
   std::vector<ChannelScale> scales_;
 };
 
-/// Sends nodes as long as the board has room, and hears how far it is.
+/// Sends nodes while the board has room, and reads the board's progress.
 class Stream {
  public:
   Stream(BoardClient& board, const PathWords& words, const PathScale& scale, const std::vector<PathStop>& stops)
       : board_(board), words_(words), scale_(scale), stops_(stops) {}
 
-  /// Until the next stop: what lies behind it is sent once the operator lets the program go on.
+  /// Up to the next stop: nodes after it are sent once the operator continues the program.
   bool is_all_sent() const { return next_ == (passed_ < stops_.size() ? stops_[passed_].knot : words_.nodes.size()); }
   /// The stop that the axes have reached.
   const PathStop* waits() const {
@@ -139,7 +139,7 @@ class Stream {
     try {
       if (!board_.path_nodes(bytes_of(node, next_ + 1 == words_.nodes.size(), scale_), state_)) return false;
     } catch (const Failure& failure) {
-      // A path that stops takes no more, whoever stopped it.
+      // A stopping path accepts no more nodes, whoever stopped it.
       state_ = board_.path_state();
       if (static_cast<PathPhase>(state_.phase) >= PathPhase::stopping) {
         next_ = words_.nodes.size();
@@ -222,7 +222,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
       const bool sent = stream.send();
       for (int k = 0; k < kReportsARound && rows && rows->fetch(sent ? milliseconds(0) : milliseconds(2));) ++k;
       if (!sent && !rows) std::this_thread::sleep_for(milliseconds(2));
-      // A simulated board in this process has its own time: rows tell it.
+      // A simulated board in this process has its own time, which the rows give.
       const auto now = steady_clock::now();
       if (now - asked < kRound && outcome.capture.number.size() < rows_asked + 16) continue;
       asked = now;
@@ -256,7 +256,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
     try {
       board.stop_path();
       if (is_capturing) board.stop_capture();
-    } catch (const Failure&) {  // the board has gone: the first failure says so
+    } catch (const Failure&) {  // the board is gone, as the first failure reports
     }
     throw;
   }
@@ -280,7 +280,7 @@ std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale
 
 namespace {
 
-/// Where on the plan a reference is: on from where it was, since the board's clock never goes back.
+/// Position of a reference on the plan, searched forward from the last one, since the board's clock never goes back.
 class PlanPlace {
  public:
   explicit PlanPlace(const PlannedPath& path) : path_(path) {}

@@ -1,4 +1,4 @@
-// The file of what was measured of a screw: host/device/pitch_table.hpp.
+// The file with the measured errors of a screw: host/device/pitch_table.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>

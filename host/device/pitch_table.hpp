@@ -12,25 +12,25 @@ namespace host {
 
 using PitchPoints = std::vector<firmware::PitchPoint>;
 
-/// What was measured, from a CSV file: lines that begin with `#`, a header of named columns, a row a place in rising
-/// order. Columns, in any order: the place `x_mm` (`x_m`), and the deviations from it, actual less wanted, `forward_um`
-/// and `backward_um` (also _mm, _m) by the direction of approach, or `error_um` for both.
-/// `count_mm`: travel of a count of the axis's encoder. Throws Failure(bad_input) with file, line, column and remedy.
+/// Measured errors from a CSV file: lines that begin with `#`, a header with column names, and one row per position in
+/// ascending order. Columns, in any order: the position `x_mm` (`x_m`), and the deviation, actual minus commanded, by
+/// direction of approach: `forward_um` and `backward_um` (also _mm, _m), or `error_um` for both. `count_mm`: travel of
+/// a count of the axis's encoder. Throws Failure(bad_input) with file, line, column and remedy.
 PitchPoints parse_pitch(std::string_view text, std::string_view name, double count_mm);
-/// What parse_pitch() reads again, within half of 2^-16 counts.
+/// Text that parse_pitch() reads back within half of 2^-16 counts.
 std::string format_pitch(const PitchPoints& points, double count_mm);
 
 /// Travel of a count, mm.
 double count_mm_of(const firmware::ParameterValues& values, std::size_t axis);
 
 PitchPoints read_pitch(BoardClient& board, std::uint8_t axis);
-/// Replaces the axis's table, switches it and saves it with all parameters that the board has now. No points: removes
-/// it. Reads back and compares. Only while every drive is disabled.
+/// Replaces the axis's table, switches it on or off and saves it with all present parameters of the board. Without
+/// points, removes the table. Reads back and compares. Only while every drive is disabled.
 void write_pitch(BoardClient& board, std::uint8_t axis, const PitchPoints& points, bool on);
 
 /// "11 points, 0 to 400 mm, on"; empty without a table.
 std::string pitch_text(const PitchPoints& points, bool on, double count_mm);
-/// The same of a board's table, of which it reads the first points and the last.
+/// The same for a board's table; reads only its first and last points.
 std::string read_pitch_text(BoardClient& board, std::uint8_t axis, bool on, double count_mm);
 
 }  // namespace host

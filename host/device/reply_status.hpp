@@ -1,4 +1,4 @@
-// What a board's refusals mean, in words.
+// The meaning of a board's refusals, in words.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// Throws Failure with cause and remedy for a status other than ok; `others` may name the programs that have the board
-/// open too.
+/// Throws Failure with cause and remedy for a status other than ok; `others` may name other programs that have the
+/// board open.
 void require_ok(const firmware::Message& reply, const std::string& others = "");
 
 }  // namespace host

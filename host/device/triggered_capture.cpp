@@ -25,7 +25,7 @@ using firmware::Channel;
 using firmware::TriggerKind;
 using firmware::TriggerPhase;
 
-/// As people say them; the columns' names serve as well.
+/// Names of signals; column names are accepted, too.
 struct ChannelWord {
   std::string_view name;
   Channel channel;
@@ -48,7 +48,7 @@ Channel channel_called(std::string_view name, sim::DriveKind kind) {
     // The board's own memory does not hold the scale on the table.
     if (const Channel channel = channel_named(name, kind); channel != Channel::table_counts) return channel;
   } catch (const Failure&) {
-    // The signals' own names are told below.
+    // The names of the signals are listed below.
   }
   std::vector<std::string_view> names;
   for (const ChannelWord& word : kChannelWords) names.push_back(word.name);
@@ -90,7 +90,7 @@ std::uint32_t level_word(const BoardTrigger& trigger, const firmware::AxisValues
   return whole(trigger.level / static_cast<double>(one) * (1 << 21));
 }
 
-/// Half words as the words of a stream: what was cut off is continued from row to row.
+/// Converts half words to the words of a stream: the missing upper half is continued from row to row.
 class Widener {
  public:
   explicit Widener(std::int64_t counts_at_trigger) : counts_(static_cast<std::uint32_t>(counts_at_trigger)) {}
@@ -137,7 +137,7 @@ bool is_complete(const firmware::TriggerStatePayload& state) {
   return state.phase == static_cast<std::uint8_t>(TriggerPhase::complete);
 }
 
-/// What the board holds must be what was asked for: another program may have armed it anew.
+/// The board's capture must be the requested one: another program may have armed it again.
 void require_own(const firmware::TriggerStatePayload& state, const firmware::TriggerRequest& asked) {
   const bool is_same = state.channels == asked.channels && state.wide == asked.wide && state.every == asked.every &&
                        state.kind == asked.kind && state.axis == asked.axis;
@@ -148,14 +148,14 @@ void require_own(const firmware::TriggerStatePayload& state, const firmware::Tri
                   "the board holds another capture than was asked for: another program has armed it");
 }
 
-/// While its rows were fetched, too, it stayed the same.
+/// It must also stay the same while its rows are fetched.
 void require_unchanged(BoardClient& board, const firmware::TriggerStatePayload& before) {
   const firmware::TriggerStatePayload now = board.trigger_state();
   if (std::memcmp(&now, &before, sizeof now) != 0)
     throw Failure(ExitCode::refused, "another program armed the board's capture while it was read: read it again");
 }
 
-/// The rows of one axis out of those of all.
+/// Selects the rows of one axis.
 Capture capture_of(BoardClient& board, const firmware::TriggerStatePayload& state, const CaptureSettings& settings) {
   const firmware::ParameterValues values = board.read_values();
   const std::int64_t counts = firmware::whole_counts(state.counts_low, state.counts_high);
@@ -275,7 +275,7 @@ Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& setti
     require_own(state, request);
     if (is_complete(state)) {
       Capture capture = capture_of(board, state, wanted);
-      board.arm_trigger({});  // lets go of it: what was read may be read again
+      board.arm_trigger({});  // releases it, so that it can be read again
       return capture;
     }
     const bool is_waiting = state.phase == static_cast<std::uint8_t>(TriggerPhase::waiting);

@@ -35,8 +35,8 @@ struct TriggeredSettings {
 /// what fits), time_out, refused (`stop` said so), what BoardClient throws.
 Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& settings, const std::function<bool()>& stop);
 
-/// What the board holds of an axis: the last capture, also from before a reset. `settings` becomes what it was taken
-/// with. Throws Failure(refused) when there is none.
+/// The board's last capture of an axis, also from before a reset. `settings` becomes what it was taken with. Throws
+/// Failure(refused) when there is none.
 Capture read_triggered_capture(BoardClient& board, TriggeredSettings& settings);
 
 }  // namespace host

@@ -33,9 +33,9 @@ constexpr double kOpenRace = 1.25;
 /// A spectrum shows a periodic effect at the right period, but smoothing weakens it, and a base biased by its absence
 /// would suppress it. So its amplitude is fitted first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
-/// Budgets of at least three times what a drive of one step a sample needs, so that a resonance of 200 Hz at 1 kHz
-/// (five steps) still gets as many passes as most fits take; all fits of a search together are some 400 million steps
-/// at most.
+/// Budgets are at least three times what a drive with one integrator step per sample needs, so that a resonance of 200
+/// Hz at 1 kHz (five steps) still gets as many passes as most fits take. All fits of a search together take at most
+/// some 400 million steps.
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
@@ -55,7 +55,7 @@ RecordSet thinned(const RecordSet& set, std::size_t windows) {
   return thin;
 }
 
-/// The set with so few windows in use that a fit's budget holds the passes it needs; not fewer than ten.
+/// The set with so few windows in use that a fit's budget suffices for its passes; at least ten windows.
 RecordSet affordable(const RecordSet& set, const sim::DriveDescription& model, const FitOptions& options) {
   constexpr std::size_t kLeastWindows = 10;
   const double share = kLeastPasses * steps_of(sim::Drive(model), set) / options.most_steps;
@@ -69,12 +69,12 @@ RecordSet affordable(const RecordSet& set, const sim::DriveDescription& model, c
 struct Start {
   const sim::EffectInfo* info;
   sim::DriveDescription model;
-  double error = HUGE_VAL;                         ///< what is left of the base's error
-  bool scanned = false;                            ///< one of many starts, of which a scan has found it the best
+  double error = HUGE_VAL;                         ///< error relative to the base's
+  bool scanned = false;                            ///< the best of many starts, found by a scan
   bool cut_short = false;                          ///< a fit ended at its budget
   sim::EffectEntry effect = model.effects.back();  ///< before any fit
 
-  /// Takes over what a fit has reached.
+  /// Takes over the result of a fit.
   void take(const FitResult& fit) {
     model = fit.model;
     cut_short = cut_short || fit.cut_short;

@@ -12,7 +12,7 @@ namespace host {
 
 /// A fitted model with effects added to a base, and its errors.
 struct Candidate {
-  std::vector<std::string> kinds;  ///< what was added to the base, in the order of the search
+  std::vector<std::string> kinds;  ///< the effects added to the base, in the order of the search
   sim::DriveDescription model;
   SetError training;
   SetError validation;
@@ -21,24 +21,24 @@ struct Candidate {
   double left = 1.0;
 };
 
-/// Called with the share of the work that is done, 0..1, from any thread.
+/// Called from any thread with the finished share of the work, 0..1.
 using ShareDone = std::function<void(double)>;
 
-/// One part of several that follow one another.
+/// Progress of one part of several consecutive ones.
 ShareDone part_of(const ShareDone& progress, double from, double to);
 
-/// Windows for a first look, for a serious fit and for the last word.
+/// Numbers of windows for the first look, the serious fits and the final comparison.
 struct SearchEffort {
   std::size_t coarse_windows = 80;
   std::size_t medium_windows = 200;
   std::size_t final_windows = 600;
   std::size_t finalists = 4;
-  /// As many samples for windows of another length.
+  /// Numbers of windows of another length with as many samples in all.
   SearchEffort over(double window_s) const;
 
-  const sim::DriveDescription* nominal = nullptr;    ///< the model as it was given, another start for its parameters
+  const sim::DriveDescription* nominal = nullptr;    ///< the given model: a further start for the base's parameters
   const std::vector<std::string>* absent = nullptr;  ///< kinds that are no candidates
-  std::vector<std::string>* cut_short = nullptr;     ///< takes the kinds of which a fit ended at its budget
+  std::vector<std::string>* cut_short = nullptr;     ///< receives the kinds for which a fit ended at its budget
 };
 
 /// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates without
@@ -53,7 +53,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
                                     const RecordSet& training, const RecordSet& validation,
                                     const ShareDone& progress = {}, const SearchEffort& effort = {});
 
-/// A model measured on both sets as it stands, against the base that it extends.
+/// Errors of a model on both sets, without a fit, relative to the base that it extends.
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
                  const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation);
 

@@ -15,10 +15,10 @@ namespace host {
 
 namespace {
 
-/// The contact of guide and bristle is about so long in a machine, mm (rolling guides break away over 5 to 100 um).
+/// Usual breakaway distances of guides, mm (rolling guides: 5 to 100 um).
 constexpr double kBreakawayTravel_mm = 0.02;
 
-/// Dry friction of the lightest drives, of what the largest command can do.
+/// Dry friction of the lightest drives, as a part of the largest command's torque or force.
 constexpr double kLeastFriction = 0.02;
 
 /// A screw of 10 mm pitch that turns at 1 rad/s.
@@ -255,7 +255,7 @@ RecordScales scales_of(const RecordSet& set) {
 }
 
 bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
-  // A drive may have several periods; their phases differ.
+  // A drive may have several periods with different phases.
   if (info.base || (model.find(info.kind) != nullptr && !info.periodic)) return false;
   const sim::EffectEntry* coulomb = model.find("coulomb");
   if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");

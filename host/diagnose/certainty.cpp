@@ -74,7 +74,8 @@ void become_ambiguous(Diagnosis& diagnosis, Kinds group) {
   diagnosis.verdict.alternatives = {std::move(group)};
 }
 
-/// The channel that is farthest above its noise floor before anything is added, in which the motion's shares are told.
+/// The channel that is farthest above its noise floor before anything is added; shares of the motion's error refer to
+/// it.
 std::string told_channel(const Diagnosis& diagnosis) {
   const ChannelFigures* worst = diagnosis.base_error.validate.worst();
   return worst == nullptr ? std::string() : worst->name;
@@ -92,7 +93,7 @@ void fill_by_effort(Diagnosis& diagnosis) {
       diagnosis.verdict.found.push_back({effect.group, effect.probability, effect.before, effect.after});
 }
 
-/// One by one, as far as the search has fitted the models between.
+/// One by one, as far as the search fitted the models in between.
 void fill_by_motion(Diagnosis& diagnosis) {
   const std::string channel = told_channel(diagnosis);
   Kinds kinds;
@@ -135,7 +136,7 @@ void settle_status(Diagnosis& diagnosis) {
   if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kNamed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
   const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
-  // What is named holds together; the rest of the best candidate is a group at most.
+  // All named effects are certain together; the other effects of the best candidate are at most a group of rivals.
   Kinds together;
   if (verdict.status == Status::missing && !hardly_helps)
     for (const std::string& kind : verdict.effects) {

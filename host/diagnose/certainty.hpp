@@ -1,4 +1,4 @@
-// From the candidates' probabilities to a status: the losses of wrong answers, and the decision that follows.
+// Decides the status of a verdict from the candidates' probabilities and the losses of wrong answers.
 #pragma once
 
 #include <string>
@@ -14,20 +14,21 @@ namespace host {
 inline constexpr double kNamed = 0.5;
 /// Largest group of rivals: one further measurement can separate this many.
 inline constexpr std::size_t kLargestGroup = 4;
-/// Whether a list of kinds has each of these.
+/// Whether a list of kinds contains all of these.
 bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds);
-/// Of all these effects together, whatever else is there besides: of all candidates that hold them.
+/// Probability of all these effects together: the sum over all candidates that contain them.
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
 
-/// Takes back what the probabilities do not carry: effects stay named where the first of them holds kNamed; else the
-/// group is named that together holds it and takes kWorthNaming, as ambiguous; else the verdict is unexplained.
+/// Withdraws names whose probability is too low. Effects stay named if the probability of the first of them reaches
+/// kNamed. Otherwise a group whose members exceed kWorthNaming and together reach kNamed is named as ambiguous;
+/// otherwise the verdict is unexplained.
 void settle_status(Diagnosis& diagnosis);
 
-/// What the model of the verdict holds: what it names, and the first of each group of which one is there for certain.
-/// Of an ambiguous verdict the first of its group.
+/// Effects of the verdict's model: the named ones, and the first of each group of which one is certain. For an
+/// ambiguous verdict, the first of its group.
 std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis);
 
-/// Fills what is certain and what remains, once the errors of the models and the residual of the best are known.
+/// Fills the certain effects and the remaining error, once the models' errors and the best model's residual are known.
 void fill_found(Diagnosis& diagnosis);
 
 }  // namespace host

@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// An error of a complete model, over its floor: made cases without any effect leave 0.8 to 1.05.
+/// Error of a complete model over its noise floor: simulated cases without an effect give 0.8 to 1.05.
 inline constexpr double kComplete = 1.0;
 
 /// Largest p-value of an improvement that is claimed.
@@ -19,29 +19,29 @@ inline constexpr double kMostLuck = 0.05;
 /// %.
 inline constexpr double kLeastGain = 0.05;
 
-/// Part of what there is to explain, before^2 - kComplete^2, that is gone, 0..1. 0 where there was nothing.
+/// Explained part of the explainable squared error, before^2 - kComplete^2, 0..1; 0 if nothing was explainable.
 double explained_share(double before, double after);
 
-/// The same share on the training data, with or without the windows of late breakaways or impacts, whose instant no
-/// model predicts.
+/// The same share on the training data, with or without the windows of late breakaways or impacts, whose times no model
+/// predicts.
 double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
-/// That a candidate adds to the base.
+/// Number of parameters that a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);
 
 /// Why a candidate is not claimed.
 enum class Reservation {
   none,
-  no_gain,      ///< it lowers too little of the error, or not on training and validation alike
-  on_bound,     ///< a parameter ran to the end of its physical range
-  leaves_much,  ///< what it leaves is too much for an effect that is really there: it makes up for something else
-  luck,         ///< too few windows judged it to rule out that the best of all that were tried was lucky
+  no_gain,      ///< it lowers the error too little, or not on both training and validation data
+  on_bound,     ///< a parameter reached a bound of its physical range
+  leaves_much,  ///< it leaves more error than a true cause would: it stands in for another effect
+  luck,         ///< too few validation windows to exclude that the best of all candidates gained by chance
 };
 
 /// The first reservation, in the order above.
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
-/// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A bound at
+/// Parameters of the effects in `kinds` that are at a bound of their range, "compliance: damping_ratio". A bound at
 /// zero means that this part of the effect is absent, which is allowed.
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
 

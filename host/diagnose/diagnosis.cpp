@@ -85,7 +85,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   return result;
 }
 
-/// Whether the regression took the motion from the speed channel and left the position aside.
+/// Whether the regression took the motion from the speed channel and did not use the position.
 bool ignores_position(const EffortRows& rows) { return rows.by_speed && rows.has_position; }
 
 /// Whether the motion shows an effect that the force-balance regression cannot see.
@@ -115,7 +115,7 @@ bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
   return left.combined > kExplained && !is_rough(left);
 }
 
-/// Down to the noise.
+/// Whether only noise remains.
 bool completes(const Diagnosis& by_motion) {
   return !by_motion.rough && !by_motion.verdict.effects.empty() &&
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
@@ -173,7 +173,7 @@ bool acts_late(const sim::EffectInfo& effect) {
 
 using Timed = std::shared_ptr<const std::vector<Record>>;
 
-/// `timed`: the records that the diagnosis refers to where these are not the measured ones.
+/// `timed`: the records that the diagnosis refers to, if they are not the measured ones.
 Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent, Timed& timed) {
   if (progress) progress(0.01);
@@ -204,7 +204,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     result.screen = screen;
     return result;
   };
-  // Empty where the search by motion decides. `rough`: that has shown that it is not to judge.
+  // Empty if the search by motion decides. `rough`: the motion has shown that the machine is limited by model error, so
+  // the motion cannot decide.
   const auto by_effort = [&](bool rough) -> std::optional<Diagnosis> {
     if (!split.moves_enough || (!has_linear_form(model) && !rough)) return {};
     const std::shared_ptr<const EffortScreen> seen = screen_of(model, split);
@@ -233,7 +234,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       const bool tells = !screen->chosen.empty();
       const bool ends_here = screen->rows.steady && (tells || !ignores_position(screen->rows));
       if (ends_here || (tells && !may_be_completed(*diagnosis, split.validation))) return *std::move(diagnosis);
-      // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
+      // An effect that does not show in the torque or force while the axis slides, such as a current limit, shows in
+      // the motion.
       over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen) ||
@@ -265,8 +267,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   return unless_unexplained(*std::move(over_long_windows));
 }
 
-/// What is no candidate: what the machine is known not to have, delays that the logged effort explains, and what a
-/// sensor on the table excludes.
+/// Kinds that are no candidates: those that the machine is known not to have, delays that the logged torque or force
+/// explains, and those that a sensor on the table excludes.
 std::vector<std::string> without_excluded(std::vector<std::string> absent, const Measurements& measured,
                                           const TableStudy* table) {
   if (timing_explains_delays(measured.training_records()))

@@ -32,29 +32,29 @@ struct EffortError {
   double floor_train = 0.0, floor_validate = 0.0;
 };
 
-/// A candidate as it was judged on validation data.
+/// A candidate and its result on validation data.
 struct JudgedCandidate {
   std::vector<std::string> kinds;
   double before = 0.0;  ///< combined
   double after = 0.0;
   double train_after = 0.0;
-  double train_after_robust = 0.0;  ///< SetError::robust; 0 where the effort was judged
-  double confidence = 0.0;          ///< that the improvement is no luck, 0..1
+  double train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
+  double confidence = 0.0;          ///< that the improvement is not by chance, 0..1
   double luck = 1.0;                ///< probability that the best of all that were tried gains as much by chance, 0..1
   double probability = 0.0;         ///< of this mechanism given these records, 0..1
   sim::DriveDescription model;
-  std::vector<std::string> on_bound = {};  ///< parameters that ran to the end of their range
+  std::vector<std::string> on_bound = {};  ///< parameters that reached a bound of their range
 };
 
-/// Effects that are certain, and the share of the signal that the error is before and after them, on held-back records:
-/// of the torque or force where that was judged, else of the channel that is farthest above its noise floor.
+/// Effects that are certain, and the error before and after them as a share of the signal on held-back records: of the
+/// torque or force if the force balance decided, else of the channel that is farthest above its noise floor.
 struct CertainEffects {
   std::vector<std::string> kinds;
   double probability = 0.0;
   double share_before = 0.0, share_after = 0.0;
 };
 
-/// What the best model leaves on held-back records.
+/// Remaining error of the best model on held-back records.
 struct Remains {
   double share = 0.0;       ///< of the signal, as in CertainEffects
   double over_floor = 0.0;  ///< combined error over the noise floor
@@ -68,13 +68,13 @@ struct DiagnosisVerdict {
   std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
   std::string next_experiment;
   std::string explanation;
-  std::vector<CertainEffects> found;    ///< what is certain, in the order in which it was found
-  std::optional<Remains> remains;       ///< beside named effects: what they leave; empty where only noise is left
-  std::string coordinate;               ///< where unexplained: what carries most of what is left
-  std::string where;                    ///< where along it, in words
+  std::vector<CertainEffects> found;    ///< the certain effects, in the order in which they were found
+  std::optional<Remains> remains;       ///< error that the named effects leave; empty if only noise remains
+  std::string coordinate;               ///< if unexplained: the coordinate that carries most of the residual
+  std::string where;                    ///< the range of that coordinate, in words
   double probability_nothing = 0.0;     ///< that nothing is missing, 0..1
-  std::vector<std::string> data_sheet;  ///< where the data fight what the model file holds or believes, in words
-  double probability_other = 0.0;       ///< that something is missing that is no candidate, 0..1
+  std::vector<std::string> data_sheet;  ///< contradictions of data and known values, in words
+  double probability_other = 0.0;       ///< that the missing effect is no candidate, 0..1
 };
 
 /// Start and result.
@@ -82,32 +82,32 @@ struct Diagnosis : PreparedSets {
   Diagnosis() = default;
   explicit Diagnosis(PreparedSets sets) : PreparedSets(std::move(sets)), best(base) {}
 
-  std::vector<LogFault> log;  ///< what is doubtful about the records
-  bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
+  std::vector<LogFault> log;  ///< doubtful points of the records
+  bool rough = false;         ///< limited by model error: even the best model is far above the noise floors
   FigureRows rows;
-  ErrorOnSets given_error, base_error, best_error;  ///< of the model as it was given, of `base`, of `best`
+  ErrorOnSets given_error, base_error, best_error;  ///< of the given model, of `base`, of `best`
   std::optional<EffortError> effort;
-  double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
+  double given_train = 0.0, given_validate = 0.0;    ///< combined, of the given model
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
-  double before_train_robust = 0.0;                  ///< SetError::robust; 0 where the effort was judged
+  double before_train_robust = 0.0;                  ///< SetError::robust; 0 if the force balance decided
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
-  ResidualTests residual;                            ///< of `best`: what depends on what in the effort that it leaves
-  std::size_t tried = 0;  ///< candidates that validation data judged; the others fell behind in training
+  ResidualTests residual;  ///< how the torque or force residual of `best` depends on each coordinate
+  std::size_t tried = 0;   ///< candidates compared on validation data; the others were worse in training
   std::vector<JudgedCandidate> candidates;  ///< best first
-  std::vector<std::string> not_searched;    ///< kinds of which a fit ended at its budget, not at its best
+  std::vector<std::string> not_searched;    ///< kinds for which a fit ended at its budget, before it converged
   DiagnosisVerdict verdict;
-  sim::DriveDescription best;                        ///< with the effects of the verdict; the base where there are none
-  std::shared_ptr<const EffortScreen> screen;        ///< what plain least squares of the effort saw; may be absent
-  std::shared_ptr<const std::vector<Record>> timed;  ///< the records of the sets, timed beside what was found
-  std::shared_ptr<const TableStudy> table;           ///< what a sensor on the table shows; empty without one
-  bool by_effort = false;  ///< that decided: errors are then of the effort over its sensors' noise
+  sim::DriveDescription best;                        ///< with the effects of the verdict; the base if it names none
+  std::shared_ptr<const EffortScreen> screen;        ///< result of the force-balance regression; may be absent
+  std::shared_ptr<const std::vector<Record>> timed;  ///< the sets' records, timed beside the found effects
+  std::shared_ptr<const TableStudy> table;           ///< result of a sensor on the table; empty without one
+  bool by_effort = false;  ///< the force balance decided: errors of the torque or force over the sensors' noise
 
   /// Whether candidates were compared by the error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
 
-  /// A combined error that judged held-back records, in the measure of `base_error`: candidates are judged over the
-  /// noise floors of the best of them, a model alone is told over its own.
+  /// A combined error on held-back records, converted to the measure of `base_error`: candidates are compared over the
+  /// noise floors of the best of them, but the error of a single model is reported over its own.
   double told(double judged) const {
     const double now = base_error.validate.combined;
     return judged_as_compared() && before_validate > 0.0 && now > 0.0 ? judged * now / before_validate : judged;
@@ -118,29 +118,28 @@ struct Diagnosis : PreparedSets {
   }
 };
 
-/// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a
-/// force as a low-pass of 100 Hz would, and ten samples at least.
+/// Length of the windows for a machine that is limited by model error: 10 ms, in which the position shows a force as a
+/// low-pass of 100 Hz would, and at least ten samples.
 double rough_window_s(const std::vector<const Record*>& records);
 
-/// Whether half of the windows lie far above their floors: on such a machine what is missing, not noise, sets the
-/// limit.
+/// Whether half of the windows are far above their noise floors: such a machine is limited by model error.
 bool is_rough(const SetError& error);
 
-/// What a rough machine is judged by: the effort, where the model has an inverse and both sets slide for a second.
-/// `validation` may be empty.
+/// Measure for a machine that is limited by model error: torque or force, if the model has an inverse and the axis
+/// slides for a second in both sets. `validation` may be empty.
 Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                       const std::vector<const Record*>& validation);
 
-/// By the motion over windows of kWindow_s. Where the machine proves rough, again by the effort, in which what is
-/// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:
-/// an earlier diagnosis of the same records, whose way of judging is taken over, so that their errors can be compared.
-/// `absent`: kinds of effects that the machine is known not to have.
-/// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
+/// Compares candidates by the motion over windows of kWindow_s. If the machine turns out to be limited by model error,
+/// it compares them again by the torque or force, in which a missing effect shows before it accumulates to a drift; if
+/// that is not possible, by the motion over short windows. `before`: an earlier diagnosis of the same records, whose
+/// measure is used again, so that the errors can be compared. `absent`: kinds of effects that the machine is known not
+/// to have. Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
 Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                    const Diagnosis* before = nullptr, const std::vector<std::string>& absent = {});
 
-/// What the force balance alone shows, without the search by motion: most of its probabilities within a second.
-/// Throws Failure(answer_is_no) where the records show no force balance, and what diagnose() throws.
+/// Diagnosis by the force balance alone, without the search by motion: a first look, usually within a second. Throws
+/// Failure(answer_is_no) if the records show no force balance, and what diagnose() throws.
 Diagnosis diagnose_quickly(const sim::DriveDescription& model, const Measurements& measured,
                            const std::vector<std::string>& absent = {});
 

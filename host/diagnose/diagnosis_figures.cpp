@@ -74,7 +74,7 @@ std::vector<std::string> remedies(const std::vector<std::string>& kinds) {
 
 namespace {
 
-/// A channel's column in the units of its error.
+/// A channel's column in the table, in the units of its error.
 struct ShownChannel {
   const char *quantity, *unit;
   double factor;
@@ -240,13 +240,13 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
 
 namespace {
 
-/// Whether it lowers the error on both sets by what counts as a gain.
+/// Whether it lowers the error on both sets by the least significant gain.
 bool changes_something(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   return candidate.after < (1.0 - kLeastGain) * candidate.before &&
          candidate.train_after < (1.0 - kLeastGain) * diagnosis.before_train;
 }
 
-/// Whether the verdict names it, or names it as what these records cannot tell from what it names.
+/// Whether the verdict names it, or lists it among the effects that these records cannot tell from a named one.
 bool is_named(const JudgedCandidate& candidate, const DiagnosisVerdict& verdict) {
   if (verdict.effects.empty()) return false;
   return std::ranges::all_of(candidate.kinds, [&](const std::string& kind) {
@@ -257,7 +257,7 @@ bool is_named(const JudgedCandidate& candidate, const DiagnosisVerdict& verdict)
   });
 }
 
-/// Effects in the candidate that the verdict names: rivals stand in place of one another, not beside it.
+/// Number of the candidate's effects that the verdict names. Rivals replace one another, so they do not add.
 std::size_t chosen_size(const DiagnosisVerdict& verdict) {
   return verdict.status == Status::ambiguous ? 1 : verdict.effects.size();
 }

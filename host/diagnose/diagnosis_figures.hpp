@@ -7,11 +7,11 @@
 
 namespace host {
 
-/// The winning panels: each of the effects, its residual and its own fitted curve (effect_plot). `rivals`: the records
-/// cannot tell them apart.
+/// The first figures: for each of the effects its residual and its fitted curve (effect_plot). `rivals`: the records
+/// cannot tell the effects apart.
 void add_found(Report& report, const std::vector<FoundEffect>& found, bool rivals);
 
-/// In the place of the winning panel: the residual over the coordinate that carries most of what nothing explains.
+/// Instead of these figures, if nothing is named: the residual over the coordinate that carries most of it.
 void add_unexplained(Report& report, const Diagnosis& diagnosis);
 
 /// RMS errors of one channel on validation data, in its own unit.
@@ -22,34 +22,34 @@ struct ChannelError {
 std::vector<ChannelError> channel_errors(const ErrorFigures& before, const ErrorFigures& after,
                                          const std::optional<EffortError>& effort);
 
-/// Position, speed, and torque or force where that is the measure: the errors on validation data in the units of the
-/// machine. Where nothing was added, `before` alone is shown.
+/// Errors on validation data, in the machine's units, of position and speed, and of torque or force if that is the
+/// measure. If nothing was added, only `before` is shown.
 Table error_table(const std::vector<ChannelError>& channels, bool added);
 
-/// "On validation data: position error 12.3 -> 1.2 µm (-90 %), ..."; empty where nothing was judged.
+/// "On validation data: position error 12.3 -> 1.2 µm (-90 %), ..."; empty without validation.
 std::string errors_in_words(const std::vector<ChannelError>& channels);
 
-/// What "noise floor" means, in one sentence, for where it first stands.
+/// Definition of "noise floor" in one sentence, for its first occurrence.
 inline constexpr const char* kNoiseFloorMeans =
     "The noise floor is the error that a perfect model would still leave: sensor noise, quantisation and the restart "
     "of the prediction.";
 
-/// The residual on validation data over the coordinates in which effects show: of the base, fitted again, and where
-/// effects were added, of `best`.
+/// The residual on validation data over the coordinates in which effects show: of the refitted base and, if effects
+/// were added, of `best`.
 void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added);
 
-/// What to do about each of the effects: the catalogue's remedies.
+/// The catalogue's remedies for each of the effects.
 std::vector<std::string> remedies(const std::vector<std::string>& kinds);
 
-/// Whether what is left is noise: its correlation with itself and with the command, with the bounds that a white one
-/// keeps, and how much of it depends on each coordinate.
+/// Whether the residual is noise: its autocorrelation and its correlation with the command, with the bounds for white
+/// noise, and the part of it that depends on each coordinate.
 void add_whiteness(Report& report, const Diagnosis& diagnosis);
 
 /// The first validation record: measured, predicted by `best`, and the errors.
 void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added);
 
-/// Error over noise floor without and with each candidate. What the verdict names stands first, together with what the
-/// records cannot tell from it; what changes nothing is folded.
+/// Error over noise floor without and with each candidate. The named effects come first, together with those that the
+/// records cannot tell from them; candidates that change nothing are folded.
 void add_candidates(Report& report, const Diagnosis& diagnosis);
 
 }  // namespace host

@@ -61,7 +61,7 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
   block.sentences.push_back(verdict.explanation);
   block.sentences.emplace_back(kNoiseFloorMeans);
   block.sentences.push_back("Next: " + verdict.next_experiment);
-  // A search that ended early says nothing against what leaves no more than noise.
+  // An incomplete search is no objection to a model that leaves only noise.
   const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= kExplained;
   if (!diagnosis.not_searched.empty() && !is_explained)
     block.sentences.push_back(fmt::format("Search incomplete (simulation budget exhausted) for: {}.",
@@ -87,7 +87,7 @@ void add_errors(Report& report, const Diagnosis& diagnosis) {
   report.add(chart);
 }
 
-/// What the verdict names, each in its best model; where it cannot tell several apart, each of those.
+/// The effects that the verdict names, each in its best model; for an ambiguous verdict, each of the rivals.
 std::vector<FoundEffect> found_by(const Diagnosis& diagnosis) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
   if (verdict.status != Status::ambiguous) return found_effects(diagnosis.best, verdict.effects, diagnosis);

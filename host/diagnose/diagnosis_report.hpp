@@ -1,4 +1,4 @@
-// Report of what is missing from a model.
+// Report on the effect that a model lacks.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace host {
 
 /// Verdict in plain words, errors, where the model fails, candidates, and the residual before and after against the
-/// coordinates in which effects show. `model_name` stands in the title.
+/// coordinates in which effects show. `model_name` appears in the title.
 Report diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name);
 
 /// The same, to a file. Throws Failure(bad_input) when it cannot write.

@@ -217,10 +217,10 @@ Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& s
 
 namespace {
 
-/// Whether the base fits each set, but with different values, as after warm-up between the records; adds that to the
-/// verdict.
+/// Whether the base fits each set, but with different values, as after a warm-up between the records. If so, adds that
+/// to the verdict.
 bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdict) {
-  constexpr double kSuits = 1.5, kFails = 2.0;  // of what the base leaves where it was fitted
+  constexpr double kSuits = 1.5, kFails = 2.0;  // times the residual of the base on the set to which it was fitted
   if (!screen.judge_alone) return false;
   const ScreenedModel &base = screen.base, &alone = *screen.judge_alone;
   if (alone.train > kSuits * base.train || base.validate < kFails * std::max(alone.train, base.train)) return false;
@@ -274,7 +274,7 @@ void take_back_denied_connection(Diagnosis& diagnosis) {
   verdict.next_experiment =
       "Measure the table: with a scale (column x2_mm), or by a dial gauge at reversals (axistool dial). " +
       verdict.next_experiment;
-  // The judges are as likely wrong as each other.
+  // Either measure may be the wrong one.
   for (JudgedCandidate& candidate : diagnosis.candidates) candidate.probability *= 0.5;
   verdict.probability_nothing *= 0.5;
   verdict.probability_other = 0.5 * (1.0 + verdict.probability_other);

@@ -24,18 +24,18 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
 /// The regression on sets that move enough, up to the number of effects that a diagnosis names.
 std::shared_ptr<const EffortScreen> screen_of(const sim::DriveDescription& model, const PreparedSets& sets);
 
-/// The diagnosis by a regression that saw something, whoever decides. `sets`: of the same records.
+/// The diagnosis by a regression with a result, whichever measure decides. `sets`: of the same records.
 Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& sets,
                        std::shared_ptr<const EffortScreen> screen);
 
-/// The first step of the regression, on sets that move enough: the odds of one effect, whoever would judge the machine.
+/// The first step of the regression, on sets that move enough: the odds of one effect, whichever measure would decide.
 std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets);
 
 /// Result of the forward prediction for the chosen effects, as a sentence; may be empty.
 std::string said_by_the_motion(const Diagnosis& diagnosis);
 
-/// A gap or a spring that the effort names and the prediction from the command denies, in that its error on held-back
-/// records increases, is not named: nothing between motor and table was measured. Says so.
+/// Withdraws a gap or spring that the force balance names if it increases the error of the prediction from the command
+/// on held-back records, because nothing between motor and table was measured. The verdict says so.
 void take_back_denied_connection(Diagnosis& diagnosis);
 
 /// If unexplained: names the coordinate that carries most of the residual, and the share that a free curve explains.

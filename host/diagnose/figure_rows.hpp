@@ -19,20 +19,21 @@ nlohmann::json to_json(const ErrorOnSets& error);
 
 struct FigureRows {
   std::vector<FigureRecord> train, validate;
-  sim::DataSheet data;  ///< as it was given, without what the records show of the sensors
+  sim::DataSheet data;  ///< as given, without the sensor properties found in the records
 
-  /// Of each set as compare tells it: with the time at which a logged current acts estimated beside the model. Throws
-  /// as figure_set() does.
+  /// Error of each set as compare reports it: the time at which a logged current acts is estimated beside the model.
+  /// Throws as figure_set() does.
   ErrorOnSets error_of(sim::DriveDescription model) const;
 };
 
-/// All windows of the records; where there is no validation record, those that train and those that are kept back.
-/// `split`: the records of this model split into usual windows, where that is at hand.
+/// All windows of the records; without a validation record, the training windows and the held-back ones. `split`: the
+/// records of this model already split into the usual windows, if available.
 FigureRows figure_rows(const sim::DriveDescription& given, const Measurements& measured,
                        const PreparedSets* split = nullptr);
 
-/// Whether `error` predicts held-back records worse than `given`: more times the noise floor, and farther off in a
-/// channel; or farther off in all of them, whatever the model's own noise floor says.
+/// Whether a model with `error` predicts held-back records worse than one with `given`: its error over noise floor and
+/// the RMS error of a channel are larger; or the RMS errors of all channels are larger, whatever its own noise floors
+/// are.
 bool is_worse(const ErrorFigures& error, const ErrorFigures& given);
 
 }  // namespace host

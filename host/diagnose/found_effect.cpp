@@ -50,7 +50,8 @@ double carried_share(const ResidualEffort& samples, const Values& trace, const R
   return carried / sum_of_squares(trace);
 }
 
-/// Where the trace could show: what the catalogue says, by the period of a ripple; of a free curve its own coordinate.
+/// Coordinates in which the trace could show: those of the catalogue, with the period of a ripple; for a free curve its
+/// own coordinate.
 std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, const sim::EffectEntry& entry,
                                                const ResidualEffort& samples, sim::DriveKind kind) {
   std::vector<std::string_view> names(info.along.begin(), info.along.end());
@@ -167,7 +168,7 @@ std::pair<double, double> range_of_means(const ScatterPlot& plot) {
   return {low - margin, high + margin};
 }
 
-/// Of what an encoder adds to the travel, over one period.
+/// The encoder's error over one period of the travel.
 double largest_encoder_error(const sim::DriveDescription& model, double period) {
   constexpr int kPlaces = 200;
   const sim::Drive drive(model);
@@ -217,7 +218,7 @@ double size_in(const FoundEffect& effect, const sim::DriveDescription& model, co
 /// 95 % interval of the size, by its slopes over the effect's parameters and their covariance (delta method).
 std::optional<std::array<double, 2>> interval_of(const FoundEffect& effect, const sim::DriveDescription& model,
                                                  const RecordSet& shown, const RecordSet& training, const Peak& peak) {
-  constexpr double kMostStep = 0.05;  // relative: the slope is wanted where the fit stands
+  constexpr double kMostStep = 0.05;  // relative: the slope is needed near the fitted value
   const auto [vector, values, covariance] = covariance_of(model, training);
   if (covariance.size() == 0) return {};
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());

@@ -17,17 +17,18 @@ struct FoundEffect {
   sim::DriveKind drive = sim::DriveKind::rotary;
   bool of_speed_channel = false;           ///< its residual is a speed, otherwise a torque or force
   ResidualCoordinate over;                 ///< of those in EffectInfo::along, the one that carries most of its trace
-  ResidualEffort without;                  ///< residual of the model without the effect, all its other parameters alike
-  std::vector<double> trace;               ///< the effect's part of each: residual without it less residual with it
+  ResidualEffort without;                  ///< residual of the model without the effect, all other parameters unchanged
+  std::vector<double> trace;               ///< the effect's contribution: residual without it minus residual with it
   std::optional<std::size_t> only_record;  ///< over time: records have no common time, so the others' samples are NaN
-  /// Where no coordinate carries the trace, as after each step of the command: the strongest seconds of the record.
+  /// Used if no coordinate carries the trace, as after each step of the command: the part of the record with the
+  /// strongest trace.
   std::optional<std::array<double, 2>> cutout_s;
-  /// Largest mean of the trace over the coordinate, in a cutout its largest value, >= 0; of an encoder's error its
-  /// largest value; of what acts in the command, the motor or the mechanics its first parameter (a gap, a delay, a
+  /// Largest mean of the trace over the coordinate, in a cutout its largest value, >= 0. For an encoder's error its
+  /// largest value; for effects of the command, the motor or the mechanics their first parameter (a gap, a delay, a
   /// resonance).
   double size = 0.0;
   std::string unit;                           ///< of the size: Nm or N, rad/s or m/s, µm, ms, Hz ...
-  std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty where the fit gives none
+  std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty if the fit gives none
   std::optional<double> share_of_friction;    ///< size over the Coulomb level, of torques on the shaft
 };
 

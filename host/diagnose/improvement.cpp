@@ -92,7 +92,8 @@ sim::DriveDescription on_base_of(const sim::DriveDescription& given, sim::DriveD
   return model;
 }
 
-/// " (0.212 against 0.208 mm in x_mm)" of the channel that is farthest off: floors differ by model, deviations do not.
+/// " (0.212 against 0.208 mm in x_mm)" of the channel that is farthest above its floor: noise floors differ by model,
+/// RMS errors do not.
 std::string in_words(const ErrorFigures& error, const ErrorFigures& given) {
   const ChannelFigures* worst = error.worst();
   if (worst == nullptr) return {};

@@ -1,4 +1,4 @@
-// Diagnose and add, again and again, until no effect is significant on validation data: the errors, step by step.
+// Diagnoses and adds effects until none is significant on validation data; records the errors step by step.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace host {
 /// One step: the effects added since the last step, and the errors of the model with them.
 struct Rung {
   std::vector<std::string> added;
-  double train = 0.0, validate = 0.0;  ///< combined, in the measure that judged
+  double train = 0.0, validate = 0.0;  ///< combined, in the measure that decided
   ErrorOnSets error;                   ///< as compare prints it
 };
 
@@ -24,37 +24,38 @@ struct Improvement {
   sim::DriveDescription model;
   Diagnosis first;    ///< the diagnosis that the ladder began with
   ErrorOnSets error;  ///< of `model`
-  /// `model` is the given one, because the last step predicts held-back records worse.
+  /// True if `model` is the given one, because the result of the last step predicts held-back records worse.
   bool kept_given = false;
-  bool is_refused = false;  ///< and what the ladder ends with was more than a re-fit that changes next to nothing
+  bool is_refused = false;  ///< and the last step was more than a refit without effect
 };
 
 /// Limit of steps; no drive has needed as many.
 inline constexpr int kMostRungs = 5;
 
 /// Never adds an effect that does not replicate on validation data, nor a kind in `absent`. `known`: the diagnosis of
-/// this model on these measurements, where it is there already. Throws as diagnose() does.
+/// this model on these measurements, if it exists already. Throws as diagnose() does.
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                     const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
                     int most_rungs = kMostRungs);
 
 /// The model with one effect added at its best fit, whether or not it is significant; every parameter carries its 95 %
-/// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.
+/// interval and `from`. Throws Failure(usage) if the effect cannot be added to this model or does not show in these
+/// records.
 struct Addition {
   JudgedCandidate judged;
   std::vector<ParameterEstimate> estimates;
   bool held_back = false;
-  ErrorOnSets given, error;  ///< of the model that came in, and with the effect
-  /// The model with the effect predicts held-back records worse: the judged model is the one that came in.
+  ErrorOnSets given, error;  ///< of the given model, and with the effect
+  /// The model with the effect predicts held-back records worse, so the returned model is the given one.
   bool kept_given = false;
 };
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 
-/// The model with a curve over a coordinate added, or over the one that judges best where `over` is empty: it gives no
-/// cause, and fits any shape. Throws Failure(refused) where no curve lowers the error.
+/// The model with a curve over a coordinate added; if `over` is empty, over the coordinate with the smallest validation
+/// error. A curve gives no cause and fits any shape. Throws Failure(refused) if no curve lowers the error.
 Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured);
 
-/// Writes intervals and origin into a fitted model; returns what the data say of each parameter.
+/// Writes intervals and origin into a fitted model; returns the estimate of each parameter.
 std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training);
 
 }  // namespace host

@@ -21,7 +21,7 @@ std::string join_words(const std::vector<std::string>& words) {
   return text;
 }
 
-/// "18.6 → 0.78 × noise floor"; empty where nothing could be judged.
+/// "18.6 → 0.78 × noise floor"; empty without validation.
 std::string fall(const Improvement& improvement) {
   const double before = improvement.first.given_error.validate.combined, after = improvement.error.validate.combined;
   if (!(before > 0.0) || !std::isfinite(before) || !std::isfinite(after)) return "";
@@ -35,7 +35,7 @@ std::vector<std::string> added_kinds(const Improvement& improvement) {
   return added;
 }
 
-/// Errors of the base re-fitted beside those of the model that is handed over.
+/// Errors of the refitted base beside those of the resulting model.
 std::vector<ChannelError> channels_of(const Improvement& improvement) {
   return channel_errors(improvement.ladder.front().error.validate, improvement.error.validate,
                         improvement.first.effort);
@@ -45,7 +45,7 @@ std::string headline(const Improvement& improvement) {
   if (improvement.is_refused) return "No better model was found; the given one is kept";
   const std::vector<std::string> added = added_kinds(improvement);
   if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
-  constexpr double kLower = 0.95;  // of the error: by less a re-fit changes nothing that anyone would call a change
+  constexpr double kLower = 0.95;  // of the error: a refit that changes less is no change
   const Status status = improvement.verdict.status;
   const double given = improvement.first.given_error.validate.combined, left = improvement.error.validate.combined;
   if (left < kLower * given && (status == Status::unexplained || status == Status::insufficient_data))
@@ -124,7 +124,7 @@ void write_improvement_report(const Improvement& improvement, const ImprovementF
   for (const FoundEffect& effect : found) sizes.push_back(size_in_words(effect) + ".");
   if (!added.empty()) sizes.push_back(errors_in_words(channels_of(improvement)));
   verdict.sentences.insert(verdict.sentences.begin(), sizes.begin(), sizes.end());
-  // Before the last, which leads to the command.
+  // Inserted before the last sentence, which leads to the command.
   const std::vector<std::string> what_to_do = remedies(added);
   verdict.sentences.insert(verdict.sentences.end() - 1, what_to_do.begin(), what_to_do.end());
   report.verdict(std::move(verdict));

@@ -1,4 +1,4 @@
-// What became of a model that was improved: in a sentence, as errors step by step, as a page.
+// Result of an improvement: as a sentence, as errors step by step, as a page.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace host {
 
-/// The model that was improved and the one that came of it, as the user named them.
+/// Paths of the given and the improved model, as the user named them.
 struct ImprovementFiles {
   std::string model, output;
 };
 
-/// "18.6 -> 0.78 x noise floor by adding cogging", where the model is, what is left, and the command that comes next.
+/// "18.6 -> 0.78 x noise floor by adding cogging", the model's file, the remaining error, and the next command.
 Verdict improvement_verdict(const Improvement& improvement, const ImprovementFiles& files);
 
-/// Errors from the model as it was given: train and validation a step, the noise floor as the reference.
+/// Errors from the given model on: training and validation error of each step, with the noise floor as reference.
 BarChart ladder_chart(const Improvement& improvement);
 
 /// The verdict, what was found, the errors step by step, and the residual before and after. Throws Failure(bad_input)

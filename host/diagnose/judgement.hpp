@@ -9,15 +9,15 @@
 
 namespace host {
 
-/// A candidate on validation data, against the base's error there, as the best of `tried`.
+/// A candidate's result on validation data relative to the base, as the best of `tried` candidates.
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before, std::size_t tried);
 
-/// The reference that floors suit: the best model that a search found.
+/// The reference for noise floors: the best model that a search found.
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings);
 
-/// Fills errors, regions, candidates and verdict of `diagnosis`, whose sets and base are there; `given` is the model
-/// before its re-fit. The floors become those of the best model found.
+/// Fills errors, regions, candidates and verdict of `diagnosis`, whose sets and base must be set; `given` is the model
+/// before its refit. The noise floors become those of the best model found.
 void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findings& findings);
 
 }  // namespace host

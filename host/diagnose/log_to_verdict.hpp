@@ -9,9 +9,9 @@
 
 namespace host {
 
-/// The data sheet of logs of the current (one or more) of which the motor's constant alone is known (Nm/A; N/A where
-/// the records are of a linear drive): a millimetre for a radian where `lead_mm_per_rad` is 0, no converter, the
-/// encoder's step as the positions show it.
+/// The data sheet for one or more logs of the current if only the motor constant is known (Nm/A; N/A for a linear
+/// drive). It has no converter, and the encoder's step as the positions show it; if `lead_mm_per_rad` is 0, 1 mm stands
+/// for 1 rad.
 sim::DriveDescription sheet_of_constant(const std::vector<Record>& records, double motor_constant,
                                         double lead_mm_per_rad);
 

@@ -14,7 +14,8 @@ namespace host {
 
 namespace {
 
-/// Difference step of the Jacobian, relative to a parameter's scale: far above rounding, small against any bend.
+/// Difference step of the Jacobian, relative to a parameter's scale: far above rounding, small compared with any
+/// curvature.
 constexpr double kDifferenceStep = 1e-4;
 
 class WindowResiduals : public ceres::CostFunction {

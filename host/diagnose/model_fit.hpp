@@ -13,9 +13,10 @@ namespace host {
 
 struct FitOptions {
   int most_iterations = 25;
-  double least_gain = 1e-4;  ///< relative gain of the squared error under which a step is the last one
+  double least_gain = 1e-4;  ///< relative decrease of the squared error below which a step is the last one
   Freedom freedom = Freedom::everything;
-  /// Steps of the integrator after which a fit ends with what it has: no clock, so that every machine finds the same.
+  /// Integrator steps after which a fit ends with its present values. Not a time limit, so that every computer gives
+  /// the same result.
   double most_steps = HUGE_VAL;
 };
 
@@ -24,27 +25,27 @@ struct FitResult {
   double robust = 0.0;  ///< SetError::robust of the training set at the solution
   int iterations = 0;
   double steps = 0.0;      ///< of the integrator
-  bool cut_short = false;  ///< ended because they were used up
+  bool cut_short = false;  ///< ended because all steps were used
 };
 
 /// Levenberg-Marquardt (Ceres) within the catalogue's bounds, from the model's present values.
 FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options = {});
 
-/// What a small change of each parameter does to the residuals of a set.
+/// Effect of a small change of each parameter on the residuals of a set.
 struct Linearisation {
-  Eigen::VectorXd residuals;  ///< as residuals_of() gives them, and below them what is believed
+  Eigen::VectorXd residuals;  ///< as residuals_of() gives them, followed by those of the priors
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;  ///< per scale of each parameter
 };
 
 /// At the model's present values. Empty if the model diverges.
 Linearisation linearise(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set);
 
-/// What the data say of one fitted parameter.
+/// Estimate of one fitted parameter.
 struct ParameterEstimate {
   std::string name;  ///< "cogging.cosine"
   double value;
   double deviation;             ///< standard error
-  bool determined;              ///< false where the interval is as wide as the value or the correlation nearly complete
+  bool determined;              ///< false if the interval is as wide as the value, or the correlation nearly complete
   std::string correlated_with;  ///< the partner of the strongest correlation above 0.95; may be empty
   double correlation = 0.0;
 };

@@ -15,7 +15,7 @@ ParameterCovariance covariance_of(const sim::DriveDescription& model, const Reco
   const Eigen::Index rows = here.size();
   if (rows == 0) return result;
 
-  // Cluster-robust: residuals of one window of one channel are alike, those of different windows are not.
+  // Cluster-robust: residuals of one window of one channel are correlated, those of different windows are not.
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);
   Eigen::Index row = 0;
   for (const ComparedRecord& compared : training.records) {
@@ -27,7 +27,7 @@ ParameterCovariance covariance_of(const sim::DriveDescription& model, const Reco
       row += length;
     }
   }
-  for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // what is believed
+  for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // priors
   const Eigen::MatrixXd bread = pseudo_inverse(gram(jacobian));
   Eigen::VectorXd scales(columns);
   for (Eigen::Index k = 0; k < columns; ++k) scales(k) = result.vector.parameters()[static_cast<std::size_t>(k)].scale;

@@ -11,10 +11,10 @@ namespace host {
 struct ParameterCovariance {
   ParameterVector vector;
   Eigen::VectorXd values;  ///< of the parameters, in their own units
-  Eigen::MatrixXd matrix;  ///< of the values; empty where the model runs away
+  Eigen::MatrixXd matrix;  ///< of the values; empty if the model diverges
 };
 
-/// At the model's present values; cluster-robust, since residuals are alike within a window.
+/// At the model's present values; cluster-robust, since residuals are correlated within a window.
 ParameterCovariance covariance_of(const sim::DriveDescription& model, const RecordSet& training);
 
 }  // namespace host

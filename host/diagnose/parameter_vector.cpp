@@ -39,7 +39,7 @@ double stiffest_contact(const sim::DriveDescription& description) {
   return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
 }
 
-/// What the entry holds, in the catalogue's order; the orders of a period one after the other.
+/// The parameters of an entry in the catalogue's order; the orders of a period follow one another.
 std::vector<std::string> ids_in_order(const sim::EffectInfo& info, const sim::EffectEntry& entry) {
   std::vector<std::string> ids;
   for (const sim::ParameterInfo& parameter : info.parameters)
@@ -78,12 +78,12 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
       FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
       if (parameter.scale == sim::Scale::bristle_stiffness)
         free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
-      if (parameter.scale == sim::Scale::converter_range) {  // the range's other half is for what moves the axis
+      if (parameter.scale == sim::Scale::converter_range) {  // the other half of the range must move the axis
         const double most = std::max(magnitude, 0.5 * description.data.dac_limit_V);
         free.lower = std::max(free.lower, -most);
         free.upper = std::min(free.upper, most);
       }
-      if (id.starts_with("static")) {  // an axis that has ever moved was broken away by its drive
+      if (id.starts_with("static")) {  // the drive can break the axis away, since it has moved
         const double most = std::max(magnitude, description.data.dac_limit_V * description.data.effort_per_volt());
         free.lower = std::max(free.lower, -most);
         free.upper = std::min(free.upper, most);

@@ -10,14 +10,14 @@
 
 namespace host {
 
-/// One free number. It may stand for several entries of the model that are claimed to be equal: parameters that had the
-/// same magnitude in one direction (eq. 19 with W1 = W2) stay equal, so that a re-fit keeps the form that it found.
+/// One free number. It may represent several entries of the model that are assumed equal: parameters that had the same
+/// magnitude in one direction (eq. 19 with W1 = W2) stay equal, so that a refit keeps the model's form.
 struct FreeParameter {
   std::size_t effect;                                   ///< index into DriveDescription::effects
   std::vector<std::pair<std::string, double>> entries;  ///< parameter id and the sign it carries
   double scale;                                         ///< typical size, > 0
   double lower, upper;                                  ///< bounds of the number
-  std::optional<sim::Belief> believed = {};             ///< what the model file says of it
+  std::optional<sim::Belief> believed = {};             ///< the model file's prior
 
   std::string name(const sim::DriveDescription& description) const;  ///< "cogging.cosine"
 };

@@ -9,8 +9,8 @@ namespace host {
 
 namespace {
 
-/// Two dozen blocks in all, between these lengths, s of motion: within two seconds it is of one kind, and 0.3 s still
-/// hold three windows.
+/// Two dozen blocks in all. Bounds of their length, s of motion: within two seconds the motion is of one kind, and 0.3
+/// s still contain three windows.
 constexpr double kBlocks = 24.0;
 constexpr double kShortestBlock_s = 0.3, kLongestBlock_s = 2.0;
 /// One block of four is held back; one of three if there are few.
@@ -44,8 +44,8 @@ double moving_s_of(const RecordSet& set) {
   return sum;
 }
 
-/// The block that each window belongs to, one list a record: so many seconds of motion each, with the rest that follows
-/// them. Blocks are counted on from record to record and end with their record.
+/// The block of each window, one list per record. A block has this many seconds of motion, and the rest that follows
+/// them. Numbering continues from record to record; a block ends with its record.
 std::vector<std::vector<std::size_t>> blocks_of(const RecordSet& set, double block_s) {
   std::vector<std::vector<std::size_t>> blocks;
   std::size_t block = 0;
@@ -69,7 +69,7 @@ std::vector<std::vector<std::size_t>> blocks_of(const RecordSet& set, double blo
   return blocks;
 }
 
-/// A record without windows says nothing, and its length of a window is not known.
+/// A record without windows is skipped, because its window length is unknown.
 void drop_empty(RecordSet& set) {
   const auto is_empty = [](const ComparedRecord& compared) { return compared.prepared.windows.empty(); };
   if (!std::ranges::all_of(set.records, is_empty)) std::erase_if(set.records, is_empty);
@@ -103,7 +103,7 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
     const std::size_t reach = trains.smoother.reach();
     trains.windows.clear();
     judges.windows.clear();
-    std::vector<bool> near(trains.record->size(), false);  // rows that a window which judges depends on
+    std::vector<bool> near(trains.record->size(), false);  // rows on which a validation window depends
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (blocks[r][k] % kept.every != kept.every - 1) continue;
       judges.windows.push_back(all[k]);

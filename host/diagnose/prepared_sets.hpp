@@ -16,45 +16,45 @@ inline constexpr double kIndependent_s = 0.1;
 inline constexpr std::size_t kFewestToLearn = 10;
 inline constexpr std::size_t kFewestToJudge = 8;
 
-/// Blocks of the training data that are kept back where no validation record is given.
+/// Blocks of the training data that are held back if no validation record is given.
 struct KeptBack {
   double block_s = 0.0;   ///< motion in a block, s
-  std::size_t every = 0;  ///< one of so many blocks is kept back; 0: none
+  std::size_t every = 0;  ///< one block of this many is held back; 0: none
 };
 
 struct PreparedSets {
   double window_s = kWindow_s;
   Measure measure = Measure::motion;
-  bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
+  bool held_back = false;  ///< no validation record was given: blocks of the training data were held back
   KeptBack blocks;
   double moving_train_s = 0.0, moving_validate_s = 0.0;  ///< time in motion within the windows that are used
-  bool moves_enough = false;                             ///< otherwise the base is the model as it was given
+  bool moves_enough = false;                             ///< otherwise the base is the given model
   sim::DriveDescription base;                            ///< the given model, re-fitted
   RecordSet training, validation;
-  std::vector<std::string> absent = {};  ///< kinds that this machine is known not to have: no candidates
+  std::vector<std::string> absent = {};  ///< kinds that this machine is known not to have, hence no candidates
 };
 
-/// Independent windows of motion in so many seconds of it.
+/// Number of independent windows in this many seconds of motion.
 std::size_t independent_windows(double moving_s);
 
 /// Seconds of further motion that a diagnosis needs; 0 if there is enough.
 double missing_motion_s(const PreparedSets& sets);
 
-/// Keeps blocks of the windows back, across all records: 0.3 to 2 s of motion each, so fine that a single short record
-/// gives some of them, and a quarter or a third of all. Windows next to a block that is kept back train no longer, as
-/// far as the smoothing of a restart reaches.
+/// Holds back a quarter or a third of the blocks of windows, across all records. A block has 0.3 to 2 s of motion, so
+/// that even a single short record gives some. Windows within the smoother's reach of a held-back block are not used
+/// for training.
 KeptBack hold_back(RecordSet& training, RecordSet& validation);
 
-/// Both sets as one, each with its floors: what recurs along the travel stands out more from several records, what
-/// happened once stands out less.
+/// Both sets as one, each with its noise floors: with more records, effects that repeat along the travel stand out
+/// more, single events less.
 RecordSet together(const RecordSet& a, const RecordSet& b);
 
-/// The sets with the floors of the model as it was given, which stays the base. Throws as prepare_sets() does.
+/// The sets with the noise floors of the given model, which stays the base. Throws as prepare_sets() does.
 PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                         const std::vector<const Record*>& validation, double window_s = kWindow_s,
                         Measure measure = Measure::motion);
 
-/// Split sets with their base fitted again, and its floors; as they are where the axis hardly moves.
+/// Split sets with their base refitted, and its noise floors; unchanged if the axis hardly moves.
 PreparedSets with_base_fitted(PreparedSets sets);
 
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot

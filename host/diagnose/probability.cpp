@@ -11,8 +11,8 @@ namespace host {
 
 namespace {
 
-/// Log of the error, over both sets alike, with what a candidate's complexity costs. Errors below the floor are the
-/// floor's own uncertainty.
+/// Log of the error, both sets weighted equally, plus the penalty for a candidate's complexity. Errors below the noise
+/// floor reflect the uncertainty of the floor.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
   const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
   return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
@@ -27,7 +27,7 @@ bool is_claimed(const Diagnosis& diagnosis) {
   return status == Status::missing || status == Status::ambiguous;
 }
 
-/// That a base with these errors, and with what the verdict objects to it, lacks nothing.
+/// Probability that a base with these errors, and with the verdict's objections to it, lacks nothing.
 double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   const double windows = static_cast<double>(
       std::max<std::size_t>(1, std::min(diagnosis.training.used_windows(), diagnosis.validation.used_windows())));

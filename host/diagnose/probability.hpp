@@ -1,36 +1,39 @@
-// How probable each answer is: every candidate, that nothing is missing, that something else is.
+// Probability of each answer: of every candidate, of "nothing is missing", and of "something else is missing".
 #pragma once
 
 #include "host/diagnose/diagnosis.hpp"
 
 namespace host {
 
-/// Constants of the probabilities, calibrated on made cases whose truth is known (axistool scoreboard
-/// shows how well).
+/// Constants of the probabilities, calibrated on simulated cases whose truth is known (axistool scoreboard shows how
+/// well).
 struct ProbabilityScale {
   double tie = 0.05;          ///< log error by which a rival's odds fall to 1/e
-  double further = 0.15;      ///< log error that a second effect must bring to be worth its place
+  double further = 0.15;      ///< decrease of the log error that makes a second effect significant
   double parameter = 0.01;    ///< the same for each parameter beyond those of the simplest candidate
-  double bound = 0.15;        ///< the same for a parameter at the end of its range
-  double complete = 1.25;     ///< error over floor at which a base is as probably complete as not
+  double bound = 0.15;        ///< the same for a parameter at a bound of its range
+  double complete = 1.25;     ///< error over floor at which a base is complete with probability 0.5
   double complete_by = 0.05;  ///< width of that step in log error, with many windows
-  double unshown = 1.8;       ///< log odds off "nothing" where the records would not have shown all that may be missing
-  double traced = 3.0;        ///< the same where what is left is small but no noise
-  double other_at = 0.12;     ///< unexplained part at which something else is as probable as the best candidate
+  double unshown = 1.8;       ///< log odds subtracted from "nothing" if the records could not have shown every effect
+  double traced = 3.0;        ///< the same if the residual is small but not noise
+  double other_at = 0.12;     ///< unexplained part at which "something else" is as probable as the best candidate
   double other_slope = 2.4;   ///< of the log odds over the log of that part
-  double lapse = 0.05;        ///< "something else" however well a candidate explains: on cuts one such answer in 16
-  double rough = 3.5;  ///< log odds that a rough machine, which lacks many small things, takes off "something else"
+  double lapse = 0.05;  ///< least probability of "something else", however well a candidate explains: one answer in 16
+                        ///< on cut records
+  double rough = 3.5;  ///< log odds subtracted from "something else" if the machine is limited by model error: it lacks
+                       ///< many small effects
   // For effects that meet all criteria of a claim (claim.hpp, effort_screen.cpp). Their residual may have further
   // causes, which does not make them less probable.
-  double lapse_of_claim = 0.01;  ///< `lapse`: of 133 records that were cut, faulty or rewritten one claim was wrong
-  /// `other_at` and `other_slope`: what is no effect of the catalogue left 0.2 and more of the squared error of made
-  /// machines, and on rough ones 0.65 and more, where right claims left up to 0.55.
+  double lapse_of_claim = 0.01;  ///< `lapse`: one claim was wrong on 133 cut, faulty or rewritten records
+  /// `other_at` and `other_slope`: with an effect outside the catalogue, the best candidate left at least 0.2 of the
+  /// squared error of simulated machines, and at least 0.65 on machines limited by model error, where correct claims
+  /// left up to 0.55.
   double other_at_claim = 0.3, other_slope_claim = 6.0, rough_claim = 5.8;
-  double gained = 3.0;  ///< log odds off "nothing": what was claimed is beyond chance
+  double gained = 3.0;  ///< log odds subtracted from "nothing" after a claim, which is not by chance
 };
 
-/// Fills `probability` of all candidates and both probabilities of the verdict, whose status is known; together they
-/// are 1.
+/// Fills `probability` of all candidates and both probabilities of the verdict, whose status must be known. Their sum
+/// is 1.
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale = {});
 
 }  // namespace host

@@ -82,8 +82,8 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
   return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
 }
 
-/// Whether the base was stuck in a local minimum: refitted from the fit of one of the best effects it trains as well
-/// without the effect. Then it keeps that fit.
+/// Whether the base was stuck in a local minimum: refitted from the fit of one of the best effects, it reaches the same
+/// training error without the effect. If so, the base keeps that fit.
 bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
   constexpr double kBetter = 0.98;
   constexpr std::size_t kTried = 3;
@@ -208,7 +208,8 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto single = std::ranges::find_if(found.singles, is_physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = on_top_of(*single, 0.5, 0.8);
-  // By all of its error: single impacts and breakaways, which an order of candidates weighs down, decide what is left.
+  // Uses the whole error, because single impacts and breakaways, which the ranking of candidates weights less,
+  // determine the remaining error.
   const auto cost = [&](const Candidate& candidate) {
     const Errors errors(candidate.model, sets);
     return is_physical(candidate) ? errors.training * errors.validation : HUGE_VAL;

@@ -1,5 +1,5 @@
-// Searches for one effect, a second beside the best one, and a third beside the best two, as long as the residual needs
-// it.
+// Searches for one effect, then for a second one to add to the best, then for a third to add to the best pair, as long
+// as the residual needs it.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace host {
 
-/// What a search found on prepared sets, each list best first.
+/// Result of a search on prepared sets, each list best first.
 struct Findings {
   std::vector<Candidate> singles;  ///< one effect added to the base
   std::vector<Candidate> pairs;    ///< a second one added to the best single
-  /// A third effect added to the best pair, if that explains much and leaves much; and the pair that remains if the
-  /// third makes another unnecessary.
+  /// A third effect added to the best pair, if the pair explains much but leaves much; and the pair that remains if the
+  /// third effect makes one of the first two unnecessary.
   std::vector<Candidate> triples;
 };
 

@@ -29,7 +29,7 @@ bool is_denied(const TableStudy& study, std::string_view kind) {
 
 bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
-/// The connection that the motion names where the table names the other one: neither is certain then.
+/// The connection that the motion names if the table names the other one: then neither is certain.
 std::optional<std::string> other_connection(const TableStudy& study, const DiagnosisVerdict& verdict) {
   if (verdict.status != Status::missing) return {};
   for (const std::string_view kind : kConnections)
@@ -39,7 +39,7 @@ std::optional<std::string> other_connection(const TableStudy& study, const Diagn
   return {};
 }
 
-/// Takes what the table denies out of names and groups; a group of which one is left is a name.
+/// Removes effects that the table excludes from names and groups; a group with one remaining effect becomes a name.
 void take_back(const TableStudy& study, DiagnosisVerdict& verdict) {
   const auto contradicted = [&](const std::string& kind) { return is_connection(kind) && is_denied(study, kind); };
   const bool group_was_named = verdict.status == Status::ambiguous;

@@ -1,5 +1,5 @@
-// What a sensor on the table decides of a diagnosis: backlash, wind-up and pitch errors are measured there, not
-// inferred.
+// Decisions that a sensor on the table makes in a diagnosis: it measures backlash, wind-up and pitch errors, which
+// otherwise are inferred.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace host {
 
-/// Kinds of connections between motor and table that the table shows not to be there. Both or none: they leave one
-/// trace in the motion, and what tells them apart is said by settle_by_table().
+/// Kinds of connections between motor and table that the table's sensor excludes. Both or none, because both leave the
+/// same trace in the motion; settle_by_table() tells them apart.
 std::vector<std::string> absent_by_table(const TableStudy& study);
 
-/// Names what the table shows beside what the motion does, and takes back what it contradicts. Needs the found effects
-/// of the motion.
+/// Names the effects that the table shows in addition to those of the motion, and withdraws those that it contradicts.
+/// Needs the found effects of the motion.
 void settle_by_table(const TableStudy& study, Diagnosis& diagnosis);
 
-/// Where only the motor's encoder was recorded and backlash or compliance is named: what a scale or a dial gauge would
-/// decide; empty elsewhere.
+/// If backlash or compliance is named and only the motor's encoder was recorded: what a scale or a dial gauge would
+/// decide; empty otherwise.
 std::string advice_on_a_scale(const DiagnosisVerdict& verdict);
 
 }  // namespace host

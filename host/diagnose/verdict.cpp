@@ -50,7 +50,7 @@ bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
   double alone_train = 0.0, alone_validate = 0.0;
   for (const std::string& kind : pair.kinds) {
     const auto single = std::ranges::find(diagnosis.candidates, std::vector{kind}, &JudgedCandidate::kinds);
-    if (single == diagnosis.candidates.end()) continue;  // too little to be tried further
+    if (single == diagnosis.candidates.end()) continue;  // gained too little to be tried further
     alone_train += std::max(0.0, explained_share(diagnosis.before_train, single->train_after));
     alone_validate += std::max(0.0, explained_share(diagnosis.before_validate, single->after));
   }
@@ -140,7 +140,7 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
   return {};
 }
 
-/// Combined error of a candidate on held-back records, as compare prints it where that is what judged.
+/// Combined error of a candidate on held-back records, as compare prints it if that measure decided.
 double told_of(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   if (!diagnosis.judged_as_compared() || diagnosis.rows.validate.empty()) return candidate.after;
   return diagnosis.rows.error_of(candidate.model).validate.combined;

@@ -1,11 +1,12 @@
-// From candidates to a verdict: the missing effect, what the data cannot separate, and what to measure next.
+// Makes a verdict from candidates: the missing effect, the effects that the data cannot separate, and the next
+// measurement.
 #pragma once
 
 #include "host/diagnose/diagnosis.hpp"
 
 namespace host {
 
-/// A combined error up to which nothing is left to explain: a perfect model gives about 1.
+/// Combined error up to which nothing remains to be explained: a perfect model gives about 1.
 inline constexpr double kExplained = 1.25;
 
 /// Whether a refit changed a parameter of an effect by more than 5 %.
@@ -14,10 +15,10 @@ bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after);
 /// Kinds of the base with a parameter that a refit changed by more than 5 %.
 std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base);
 
-/// Fills the verdict of a diagnosis whose candidates are judged; `given` is the model before its re-fit.
+/// Fills the verdict of a diagnosis whose candidates have been compared; `given` is the model before its refit.
 DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnosis& diagnosis);
 
-/// The verdict where the axis hardly moved.
+/// The verdict if the axis hardly moved.
 DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const PreparedSets& sets);
 
 }  // namespace host

@@ -17,11 +17,11 @@ namespace host {
 namespace {
 
 constexpr std::size_t kWindows = 100;
-/// Of an effect with many starts, so many are tried, evenly spread.
+/// If an effect has many starts, this many are tried, evenly spread.
 constexpr std::size_t kMostSizes = 4;
 /// Difference step of the slopes, relative to a parameter's scale.
 constexpr double kStep = 1e-3;
-/// Of a linear drive, whose model knows no screw, a ripple recurs with a usual screw's pitch.
+/// Period of a ripple on a linear drive, whose model has no screw: that of a usual screw's pitch.
 constexpr double kUsualPitch_m = 0.01;
 /// Usual amplitudes of ripples: cogging and friction along the travel relative to the Coulomb level, ripple of the
 /// torque constant and of the tachometer relative to what they ripple on, an encoder's error in steps of a micrometre.

@@ -1,4 +1,4 @@
-// Residual structure beyond any effect: smooth functions over each coordinate.
+// Smooth functions of each coordinate, for the part of the residual that no effect explains.
 #pragma once
 
 #include <vector>

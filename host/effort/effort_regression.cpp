@@ -70,7 +70,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
       }
     }
     if (worst < 0) break;
-    // The data want a negative factor: only a small part remains.
+    // The data give a negative factor, so only a small positive one remains.
     constexpr double kHardlyAny = 0.01;
     fixed[static_cast<std::size_t>(worst)] = true;
     beliefs[static_cast<std::size_t>(worst)].value *= kHardlyAny;

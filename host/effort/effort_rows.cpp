@@ -188,8 +188,8 @@ bool enough(const EffortRows& rows, bool judges) {
 }  // namespace
 
 double most_noise(const EffortRows& rows, bool judges) {
-  // Rows stand a quarter of the cut-off's period apart: two of them are one independent value. The RMS of n such values
-  // has a relative standard deviation of 1/sqrt(2 n).
+  // Rows are a quarter of the cut-off's period apart, so two of them make one independent value. The RMS of n such
+  // values has a relative standard deviation of 1/sqrt(2 n).
   const auto count = static_cast<double>(std::ranges::count(rows.judges, judges));
   return rows.noise * (1.0 + 2.0 / std::sqrt(std::max(count, 1.0)));
 }

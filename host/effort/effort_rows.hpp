@@ -15,16 +15,16 @@ struct EffortSignals {
   double cutoff_Hz = 0.0;
   std::vector<double> speed;         ///< rad/s or m/s, every sample
   std::vector<double> acceleration;  ///< rad/s^2 or m/s^2, every sample
-  std::vector<double> motion;        ///< travel, without a position the speed, at every sample
+  std::vector<double> motion;        ///< travel (the speed, if there is no position), every sample
   std::vector<std::size_t> kept;     ///< samples that became rows, in order
   std::size_t first_row = 0;         ///< of those, in EffortRows
 };
 
-/// All records after one another; one element a row. Speeds in rad/s or m/s, travel in mm or m, effort in Nm or N.
+/// All records one after the other; one element per row. Speeds in rad/s or m/s, travel in mm or m, effort in Nm or N.
 struct EffortRows {
   Eigen::VectorXd t_s, x, w, acceleration, effort;
-  /// Change of the torque or force from one sample to the next, Nm or N: what one sample in the time at which a logged
-  /// current acts adds. 0 in records where that time is known.
+  /// Change of the torque or force from one sample to the next, Nm or N: the effect of a time offset of the logged
+  /// current by one sample. 0 in records whose time offset is known.
   Eigen::VectorXd effort_per_sample;
   std::vector<bool> judges;         ///< a row of the validation set
   std::vector<std::size_t> block;   ///< half a second of one record, whose rows are correlated
@@ -35,7 +35,7 @@ struct EffortRows {
   bool steady = true;         ///< the speed hardly changes within the records, so that inertia cannot be identified
   double lowest_cutoff_Hz = 0.0;
   double lead = 1.0;              ///< travel of one radian, mm; 1 of a linear drive
-  bool commanded = true;          ///< by the logged command in every record, not by a measured torque or current
+  bool commanded = true;          ///< torque or force is known from the logged command in every record, not measured
   double timing_deviation = 0.0;  ///< of the time at which a logged current acts, samples; 0 if it is known
   double first_stamp_s = 0.0;     ///< of the training records
   double noise = 0.0;             ///< RMS torque or force due to sensor noise through the model's inertia, Nm or N
@@ -47,8 +47,8 @@ struct EffortRows {
 /// speed per direction, and no acceleration.
 void take_mean_speeds(EffortRows& rows);
 
-/// RMS that the sensors' noise leaves on the rows that judge, or on the others, at most: two standard deviations of an
-/// RMS of so many values above `noise`.
+/// Upper bound of the RMS residual that sensor noise alone leaves on the validation rows, or on the training rows:
+/// `noise` plus two standard deviations of an RMS of this many values.
 double most_noise(const EffortRows& rows, bool judges);
 
 /// RMS of one value per row, over validation rows or training rows.
@@ -66,7 +66,7 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
 /// Every `stride`-th row of each record.
 struct ThinnedRows {
   EffortRows rows;
-  std::vector<Eigen::Index> from;  ///< of each row, which one it was
+  std::vector<Eigen::Index> from;  ///< index of each row among all rows
 
   /// The same rows of a matrix with all rows.
   Eigen::MatrixXd of(const Eigen::MatrixXd& columns) const { return columns(from, Eigen::all); }

@@ -36,7 +36,7 @@ struct EffortScreen {
 
   bool empty() const { return rows.size() == 0; }
   const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
-  /// Whether the sensors' noise alone may leave as much as the best model does on the rows that judge.
+  /// Whether sensor noise alone can explain the best model's residual on the validation rows.
   bool leaves_noise() const { return best().validate * effort_validate <= most_noise(rows, true); }
 };
 

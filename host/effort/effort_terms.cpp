@@ -180,7 +180,7 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
       const std::string id = volts ? "offset" : "torque";
       terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
     } else if (is_linear(entry) && rows.has_position) {
-      // What these rows do not show stays as it is given.
+      // Parameters that these rows do not show keep their given value.
       if (entry.kind != "cogging" && (rows.by_speed || rows.steady)) continue;
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
       std::vector<double> orders;
@@ -210,8 +210,8 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
     }
   }
   if (rows.timing_deviation > 0.0) {
-    // What was found beside inertia and friction may be biased by all that is missing, and is no prior. Where nothing
-    // was found, a part of a sample: more is a delay, which is an effect.
+    // An offset estimated beside inertia and friction alone may be biased by every missing effect, so it is no prior.
+    // If none was estimated, the prior is a part of a sample: more is a delay, which is an effect.
     constexpr double kPart = 0.25;
     EffortTerm timing{"effort_timing", rows.effort_per_sample, {0}, [](const VectorXd&, auto&) { return true; }, {}};
     timing.deviation = rows.timing_deviation < kBelievedTiming.deviation ? kBelievedTiming.deviation : kPart;
@@ -295,7 +295,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
   if (may_have("nonlinear_viscous"))
     for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
       const double saturation = part * top;
-      // Flattening: friction that falls with speed is Stribeck friction.
+      // Only flattening curves: friction that falls with speed is Stribeck friction.
       terms.push_back(simple(
           "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), 1,
           [saturation](double coefficient, sim::DriveDescription& fitted) {

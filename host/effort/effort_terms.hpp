@@ -31,7 +31,7 @@ struct EffortTerm {
   double acting = 1.0;
 };
 
-/// Where the terms are, for a fit that takes further ones.
+/// Position of these terms in a fit that also has others.
 std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms);
 
 /// Adds an effect to a model; false if a parameter exceeds the catalogue's bounds.

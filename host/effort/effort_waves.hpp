@@ -27,8 +27,9 @@ double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
 /// period that repeats within the travel; `longest`: in travels, of the free ones.
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest);
 
-/// Natural logarithm of how probable each of these waves is before the measurement. Screw and motor cause most periods:
-/// half is theirs, by 1/order, which prefers no scale; the other half is shared evenly by the free periods.
+/// Natural logarithm of the prior probability of each of these waves. Screw and motor cause most periods, so their
+/// orders share one half in proportion to 1/order, which prefers no scale. The free periods share the other half
+/// equally.
 std::vector<double> log_priors(const std::vector<Wave>& waves, const sim::DataSheet& data);
 
 /// cos and sin of a wave, times `weight`: two columns.
@@ -38,23 +39,23 @@ Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weig
 /// J(x) a + w^2/2 dJ/dx. Two columns, for the cosine and sine of J. Not in the catalogue.
 Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave);
 
-/// Torque or force that an error of the encoder, one wave of the reading, seems to need: the motion that is read has
-/// the error's acceleration and speed, the drive has not. Two columns, for the cosine and the sine of the error in mm
-/// or m; by the model's inertia and viscous friction.
+/// Apparent torque or force of an encoder error that is one wave of the reading: the reading contains the error's
+/// acceleration and speed, the drive's motion does not. Two columns, for the cosine and the sine of the error in mm or
+/// m; computed with the model's inertia and viscous friction.
 Eigen::MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortRows& rows, const Wave& wave);
 
-/// By what their factors are divided for an error in mm or m: the columns are of the given inertia, and the error acts
-/// on the fitted one.
+/// Divisor of their factors that gives an error in mm or m: the columns use the given inertia, but the error acts on
+/// the fitted one.
 double encoder_error_unit(const sim::DriveDescription& given, const sim::DriveDescription& fitted);
 
 using WaveColumns = std::function<Eigen::MatrixXd(const Wave&)>;
 
-/// A periodic effect of one wave, with its columns at every row. A model that has an entry of that kind and period gets
-/// one order more.
+/// A periodic effect of one wave, with its columns at every row. If the model already has an entry of that kind and
+/// period, the wave is added to it as a further order.
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
                      const WaveColumns& columns_of, const Wave& wave);
 
-/// All waves that a model holds of a kind: "orders 72, 18 of 6.283 mm".
+/// All waves of a kind in a model: "orders 72, 18 of 6.283 mm".
 std::string words_of_waves(const sim::DriveDescription& model, const std::string& kind);
 
 }  // namespace host

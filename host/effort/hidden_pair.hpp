@@ -9,9 +9,9 @@
 
 namespace host {
 
-/// Of the pair with the smallest training residual that together explains more of the squared error than both alone add
-/// up to, in training and in validation: the one that explains less alone. Null if no pair does so and is large enough
-/// to be named. Waves are excluded: together they fit any shape. `now`: the effects chosen so far, fitted.
+/// Finds the pair with the smallest training residual that together explains more of the squared error than the sum of
+/// both alone, in training and in validation. Returns the one that explains less alone; null if no such pair is large
+/// enough to be named. Waves are excluded: together they fit any shape. `now`: the effects chosen so far, fitted.
 const NextEffect* less_seen_of_two(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                                    const std::vector<EffortTerm>& chosen, const ScreenedModel& now,
                                    const NextEffects& all,

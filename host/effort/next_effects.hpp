@@ -31,7 +31,7 @@ struct NextEffects {
 /// them, or too many are needed. `probability`: of the group.
 std::vector<std::string> certain_group(const NextEffects& next, double& probability);
 
-/// Counts the unnamed effect as "nothing of the catalogue".
+/// Counts the effect outside the catalogue as "nothing of the catalogue".
 void leave_unnamed(NextEffects& next);
 
 /// Removes kinds from the candidates; the others share their probability.
@@ -40,7 +40,7 @@ void take_out(NextEffects& next, const std::vector<std::string>& kinds);
 /// Removes all kinds from the candidates.
 void leave_nothing(NextEffects& next);
 
-/// Puts a candidate in the place of those of `kind` and of its own kind, with the probability of both.
+/// Replaces the candidates of `kind` and of its own kind by a candidate with the probability of both.
 void give_place(NextEffects& next, const std::string& kind, NextEffect to);
 
 /// The candidate of that kind, which must exist.

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kGapStep = 1.5;  ///< from one width of the gap to the next that is tried
+constexpr double kGapStep = 1.5;  ///< ratio of one tried width of the gap to the next
 
 /// A load behind a spring whose motor end moves as recorded.
 struct Load {
@@ -26,12 +26,12 @@ struct Load {
   double damping;
   double friction;         ///< Coulomb friction over inertia, rad/s^2 or m/s^2
   double gap = 0.0;        ///< free travel, rad or m
-  double least_gap = 0.0;  ///< that the encoder shows: a smaller one is a spring
+  double least_gap = 0.0;  ///< smallest gap that the encoder shows: a smaller one is modelled as a spring
 };
 
 /// The coupling's pull over the load's inertia at every sample: w^2 d + 2 z w d', with d the twist beyond the gap,
 /// d'' = a - pull + friction sign(load's speed); behind a gap the contact pushes and never pulls (sim/coupling.hpp).
-/// Semi-implicit steps of an eighth of a radian; friction takes speed away at most, and then holds.
+/// Semi-implicit steps of an eighth of a radian. Friction can only slow the load down to rest, and then holds it.
 std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
   std::vector<double> pulls(signals.speed.size());
   const double omega = 2.0 * std::numbers::pi * load.resonance_Hz, damping = 2.0 * load.damping * omega;
@@ -63,7 +63,8 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
   VectorXd column(rows.w.size());
   for (const EffortSignals& signals : rows.signals) {
     std::vector<double> pulls = pull_over(signals, load);
-    // A free load's pull is as smooth as the motion; what strikes or sticks is not, and the effort was smoothed.
+    // The pull of a free load is as smooth as the motion. The pull of a load that strikes or sticks is not, so it is
+    // smoothed like the effort.
     if (load.gap > 0.0 || load.friction > 0.0)
       pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
     for (std::size_t k = 0; k < signals.kept.size(); ++k)
@@ -74,7 +75,7 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
 
 EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
-  // A load that its friction holds is a hysteresis (a cable chain, a seal), whatever mass it has.
+  // A load that its own friction holds acts as a hysteresis (a cable chain, a seal), whatever its mass.
   constexpr double kHeld = 0.7;  // of the RMS pull
   const double pull = std::sqrt(term.columns.squaredNorm() / static_cast<double>(term.columns.rows()));
   const bool held = load.friction > kHeld * pull;
@@ -84,13 +85,14 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     const double whole = inertia.at("J") + factors(0), share = factors(0) / whole;
     if (held || !(share > 0.0) || !(share < 1.0)) return false;
     const double ratio = 1.0 / std::sqrt(1.0 - share), on_load = load.friction * factors(0);
-    // With more damping nothing resounds, and a spring stands for something else; what strikes is damped as it may be.
+    // With more damping there is no resonance, and the spring stands in for another effect. A load that strikes may
+    // have any damping.
     constexpr double kSwings = 0.71;
     if (load.gap <= 0.0 && load.damping * ratio > kSwings) return false;
     inertia.parameters["J"] = whole;
     double part = 0.0;
     if (sim::EffectEntry* coulomb = fitted.find("coulomb"); coulomb != nullptr && on_load > 0.0) {
-      // The regression's level is the motor's own; the model's is that of both.
+      // The friction level of the regression is that of the motor alone; the model's level is that of motor and load.
       double level = 0.0;
       for (const auto& [id, value] : coulomb->parameters)
         level += std::abs(value) / static_cast<double>(coulomb->parameters.size());
@@ -121,7 +123,8 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     };
   term.neighbours = [&rows, load, unit](double part) {
     std::vector<EffortTerm> around;
-    // Damping and friction show far less than the frequency; behind a gap, so does the frequency.
+    // Damping and friction are much less visible than the frequency; behind a gap, the frequency is hardly visible
+    // either.
     constexpr double kCoarser = 6.0;
     for (const double sign : {-1.0, 1.0}) {
       const double fine = std::exp(sign * part), coarse = std::exp(sign * kCoarser * part);
@@ -153,7 +156,7 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   for (const char* contact : {"compliance", "backlash", "presliding"})
     if (model.find(contact) != nullptr) return {};
   if (rows.steady) return {};  // without acceleration a second mass does not show
-  // Beyond the cut-off a spring still shows as a travel in proportion to the force.
+  // A resonance beyond the cut-off still shows as a deflection in proportion to the force.
   constexpr double kLowest_Hz = 1.0, kStep = 1.12, kShareOfCutoff = 0.8, kBeyond = 2.0;
   sim::DriveDescription base = model;
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
@@ -169,9 +172,9 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
     if (usual > 0.0)
       for (const double part : {0.25, 0.5, 1.0, 2.0, 4.0}) loads.push_back({resonance_Hz, 0.05, part * usual});
   }
-  // Gaps from a few counts of the encoder to what the catalogue allows, and to a twentieth of the travel. A contact is
-  // stiff, and what it does beyond the cut-off does not show. It is damped well: where it bounces, no motion that is
-  // known to a count tells when.
+  // Gaps from a few counts of the encoder up to the catalogue's bound, at most a twentieth of the travel. The contact
+  // is stiff; its motion beyond the cut-off does not show. It is well damped, because a motion known to one count does
+  // not tell the times of bounces.
   if (rows.has_position && may_be("backlash")) {
     const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
     constexpr double kOfTravel = 0.05;

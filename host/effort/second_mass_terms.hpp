@@ -1,4 +1,4 @@
-// A load on a spring, with or without a gap, as it shows in the effort of a motor whose motion is known.
+// Torque or force on a motor with known motion from a load on a spring, with or without a gap.
 #pragma once
 
 #include <string>
@@ -8,14 +8,15 @@
 
 namespace host {
 
-/// Compliance and backlash: loads of many frequencies and dampings, without and with friction of their own, and, of
-/// backlash, of many gaps. The column is the coupling's pull for a load of inertia 1, so that its factor is the load's
-/// inertia. The terms refer to the rows. None of the kinds in `absent`. Empty where nothing accelerates, and where the
-/// model has a contact already.
+/// Terms of compliance and backlash: loads with many frequencies and dampings, with and without friction of their own,
+/// and for backlash with many gaps. The column is the coupling's pull for a load of inertia 1, so its factor is the
+/// load's inertia. The terms refer to the rows. Kinds in `absent` are left out. Empty if nothing accelerates, or if the
+/// model already has a contact.
 std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                           const std::vector<std::string>& absent);
 
-/// The narrowest gap that an encoder shows, mm or m: four of its counts. A narrower one is the spring behind it.
+/// The narrowest gap that an encoder resolves, mm or m: four counts. A narrower one is replaced by the spring behind
+/// it.
 double least_gap(const sim::DataSheet& data);
 
 }  // namespace host

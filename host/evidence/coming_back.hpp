@@ -1,4 +1,5 @@
-// Whether an axis returns to where it was: while it never does, what depends on the position may depend on the time.
+// Whether an axis returns to earlier positions. If it never does, a dependence on position cannot be told from one on
+// time.
 #pragma once
 
 #include "host/record/record.hpp"

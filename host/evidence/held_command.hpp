@@ -1,4 +1,5 @@
-// The command that a prediction applies: held, and changed once a row at the time when a logged current really acts.
+// The command that a prediction applies: held, and changed once per row, at the time at which a logged current really
+// acts.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ class HeldCommand {
   void step(const sim::Drive& drive, sim::DriveState& state, std::size_t row) const {
     const double t_s = (*t_s_)[row];
     if (rest_s_ <= 0.0) return drive.step(state, u_V_[row], t_s, change_s_);
-    // A drive with a dead time counts it in steps of one length.
+    // A drive with a dead time needs steps of equal length.
     if (drive.delay_s > 0.0)
       return drive.step(state, (change_s_ * u_V_[row] + rest_s_ * u_V_[row + 1]) / (change_s_ + rest_s_), t_s,
                         change_s_ + rest_s_);

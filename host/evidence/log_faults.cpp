@@ -219,7 +219,7 @@ std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet
 
 namespace {
 
-/// What the data sheet lacks, or which drive it describes.
+/// Faults of the data sheet: missing fields, or another drive.
 void find_wrong_sheet(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
   const char* unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (!model.effects.empty() && !record.drive.empty() && !model.name.empty() && record.drive != model.name)

@@ -1,4 +1,4 @@
-// Faults of logging that no physics explains; they are ruled out before any effect is suspected. Faults that reading a
+// Faults of logging that no physics explains; they are excluded before the search for effects. Faults that reading a
 // record refuses (dead or copied channels, gaps in time, speed against position in sign or unit) are not repeated here.
 #pragma once
 
@@ -13,14 +13,14 @@
 namespace host {
 
 /// Faults of a record that is adapted to its drive. `model` gives the data sheet and, with an inertia, the drive's
-/// limits; without one, signs and the command's size against the converter's range are still checked. Reports nothing
-/// that physics could explain: a delay, a lag, a changed inertia, a limit of the amplifier.
+/// limits; without an inertia, signs and the command's size against the converter's range are still checked. Reports
+/// nothing that physics could explain: a delay, a lag, a changed inertia, a limit of the amplifier.
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model);
 
-/// Of these faults, the copied channels. Wrong units and exchanged names may be their consequences.
+/// The copied channels among these faults. Wrong units and exchanged names may be their consequences.
 std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet& data);
 
-/// The list "log" of every command that reads records.
+/// The list "log" in the JSON output of every command that reads records.
 nlohmann::json log_faults_json(const std::vector<LogFault>& faults);
 
 }  // namespace host

@@ -37,7 +37,7 @@ struct PreparedRecord {
   double window_s() const {
     return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
   }
-  /// Of a window that begins at a multiple of the common length; the last one may be shorter.
+  /// Index of a window, which begins at a multiple of the common length; the last one may be shorter.
   const ShiftWeights& weights_of(const Window& window) const {
     return (*shift_weights)[window.begin / windows.front().length];
   }

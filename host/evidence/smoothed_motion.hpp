@@ -54,7 +54,7 @@ class MotionSmoother {
   /// N): approximate jump of the friction at a start, stop or reversal.
   MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
                  double friction_level);
-  /// By the inertia and the friction of a model. Throws Failure(bad_input) where it has no inertia.
+  /// With the inertia and the friction of a model. Throws Failure(bad_input) if it has no inertia.
   MotionSmoother(const Record& record, const sim::DriveDescription& model);
 
   const SmoothedMotion& motion() const { return motion_; }

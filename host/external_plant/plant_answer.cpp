@@ -23,7 +23,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
-/// The number of the period stands first.
+/// Reads the number of the period, the first word of the line.
 bool is_period(std::string_view field, std::uint64_t k) {
   std::uint64_t period = 0;
   const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), period);
@@ -37,7 +37,7 @@ bool is_period(std::string_view field, std::uint64_t k) {
                 fmt::format("{}; an answer is \"{}\": position, then tachometer or -, an axis", what, form));
 }
 
-/// Nothing where `text` as a whole is no finite number within bounds.
+/// Empty unless the whole `text` is a finite number within bounds.
 std::optional<double> number(std::string_view text) {
   const std::optional<double> value = parse_number(text);
   return value && std::abs(*value) <= kMostOfPlant ? value : std::nullopt;

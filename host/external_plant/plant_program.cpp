@@ -36,7 +36,7 @@ bool wait_for(int descriptor, short event, steady_clock::time_point deadline) {
   }
 }
 
-/// What a reader can make sense of: control characters as '?', and no more than a line's worth.
+/// A readable text: control characters as '?', and no longer than a line.
 std::string shown(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';

@@ -19,9 +19,8 @@ class PlantProgram {
   PlantProgram& operator=(const PlantProgram&) = delete;
   ~PlantProgram();
 
-  /// Sends a line, which ends in a line feed, and returns the answer without its own. Throws Failure with what the
-  /// program last said: no_such_device (it has ended), time_out (no answer within `patience`), protocol (a line without
-  /// end).
+  /// Sends a line, which ends in a line feed, and returns the answer without its own. Throws Failure with the program's
+  /// last output: no_such_device (it has ended), time_out (no answer within `patience`), protocol (a line without end).
   std::string ask(std::string_view line, std::chrono::milliseconds patience);
 
   /// "the plant 'COMMAND' WHAT; it last said '…'".

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInch_mm = 25.4;
 constexpr double kUsualTolerance_mm = 0.05;
-// As LinuxCNC has it: an arc's radii at its begin and its end may differ by that much, or by a thousandth.
+// As in LinuxCNC: an arc's radii at its beginning and end may differ by this length, or by a thousandth.
 constexpr double kRadiusTolerance_mm = 0.0127, kRadiusShare = 0.001;
 constexpr double kFarthest_mm = 1e6;  ///< beyond any machine, and every sum is still exact enough
 
@@ -52,7 +52,7 @@ class Reader {
     throw Failure(ExitCode::bad_input, fmt::format("{}:{}: {}", name_, line_, what));
   }
 
-  /// Splits into words; comments, block delete and the tape's `%` fall away.
+  /// Splits a line into words; removes comments, block delete and the tape's `%`.
   std::vector<Word> words_of(std::string_view line) const {
     std::vector<Word> words;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -278,7 +278,7 @@ class Reader {
     return machine_.rapid_share * line.length() / way.cwiseQuotient(machine_.fastest_mm_s).maxCoeff();
   }
 
-  /// `least_s`: what it takes at least.
+  /// `least_s`: minimum duration.
   void append(const PathMove& move, double least_s) {
     duration_s_ += least_s;
     if (duration_s_ > kLongestPath_s)
@@ -290,7 +290,7 @@ class Reader {
   }
 
   void go_home() {
-    // By way of the point that the line names, as the standard has it.
+    // Through the point that the line names, as in the standard.
     const PathPoint by = target();
     if ((by - at_).norm() > 0.0) add(PathCurve::line(at_, by), true);
     PathPoint home = machine_.home;
@@ -321,7 +321,7 @@ class Reader {
     at_ = to;
   }
 
-  /// The axes stand before and after it; where they then stand, only the probe knows.
+  /// The axes stand before and after it; their position afterwards depends on the probe.
   void probe(const PathPoint& to) {
     if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");
     const bool is_certain = !machine_.begins_anywhere && program_.probes.size() <= machine_.probed.size();
@@ -349,7 +349,7 @@ class Reader {
     else if (angle <= 0.0)
       angle += 2.0 * std::numbers::pi;
     add(PathCurve::arc(at_, centre, sense * angle, to.z()), false);
-    // Where begin and end have not quite the same radius, a line closes what is left: below the tolerance of arcs.
+    // If the radii at beginning and end differ slightly, a line closes the gap, which is below the tolerance of arcs.
     const PathPoint reached = program_.moves.back().curve.end();
     if ((reached - to).norm() > 1e-9) program_.moves.back().curve = closed_arc(centre, sense * angle, to);
   }
@@ -420,7 +420,7 @@ class Reader {
   Motion motion_ = Motion::none;
   GcodeProbe probe_;
   double unit_mm_ = 1.0, feed_mm_s_ = 0.0, tolerance_mm_ = 0.0, duration_s_ = 0.0;
-  std::array<bool, 3> is_known_{};  ///< where the axis stands
+  std::array<bool, 3> is_known_{};  ///< whether the axis's position is known
   bool is_relative_ = false, has_ended_ = false;
 };
 

@@ -16,9 +16,9 @@ struct GcodeMachine {
   PathPoint home = PathPoint::Zero();  ///< that G28 goes to, mm
   bool begins_anywhere = false;        ///< the start position is unknown: arcs are not checked before a line has set it
   double feed_share = 1.0;             ///< override of the feeds F, > 0; limits of axes hold anyway
-  double rapid_share = 1.0;            ///< override of rapids, 0 to 1: of the speed that `fastest_mm_s` allows
+  double rapid_share = 1.0;            ///< override of rapids, 0 to 1, relative to `fastest_mm_s`
   PathPoint fastest_mm_s = PathPoint::Constant(1e9);  ///< each axis's, > 0
-  std::vector<PathPoint> probed;  ///< where the first probing moves ended; the others are taken to reach their targets
+  std::vector<PathPoint> probed;  ///< ends of the first probing moves; others are assumed to reach their targets
 };
 
 /// A probing move: G38.2 to G38.5.
@@ -34,12 +34,12 @@ struct GcodeProgram {
   std::vector<GcodeProbe> probes;
   std::vector<std::size_t> rapid_lines;  ///< ascending; a line moves by rapids or by feeds, never by both
   std::size_t lines = 0;                 ///< of the text
-  bool is_absolute = false;              ///< it names a position other than by steps from where it began
+  bool is_absolute = false;              ///< it contains an absolute position
 };
 
 /// G0 G1 G2 G3 (centre by I J, or R; X Y Z) G4 P G17 G20 G21 G28 G38.2 to G38.5 G54 G61 G64 [P] G90 G91 F M0 M1 M2 M30
 /// N, comments in parentheses or behind a semicolon, `%` around it, block delete `/`. Begins with G17 G21 G54 G61 G90
-/// and no feed. M0 and M1 stop the program until the operator lets it go on. G64 without P keeps within 0.05 mm. Throws
+/// and no feed. M0 and M1 stop the program until the operator continues it. G64 without P keeps within 0.05 mm. Throws
 /// Failure(bad_input) "NAME:LINE: what" for anything else.
 GcodeProgram read_gcode(std::string_view text, const std::string& name, const PathPoint& start,
                         const GcodeMachine& machine);

@@ -16,7 +16,7 @@ struct CircleRun {
   const ScenarioRun* run = nullptr;
 };
 
-/// Of the scenario's last path; empty if it is not a circle or was not followed.
+/// The plot of the scenario's last path; empty if that is not a circle or was not followed.
 std::optional<PolarPlot> circle_plot(const Scenario& scenario, const std::vector<CircleRun>& runs);
 
 }  // namespace host

@@ -71,7 +71,8 @@ CheckedExpectation check_signal(const Expectation& expected, const ScenarioRun& 
       (!expected.at_most || largest <= *expected.at_most) && (!expected.at_least || largest >= *expected.at_least);
   if (expected.at_most_share) {
     const double other = largest_of(expected, *expected.of_axis, run);
-    checked.text += fmt::format(", at most {:g} of axis {}'s", *expected.at_most_share, kAxisNames[*expected.of_axis]);
+    checked.text +=
+        fmt::format(", at most {:g} times that of axis {}", *expected.at_most_share, kAxisNames[*expected.of_axis]);
     checked.found += fmt::format(" of {}", format_value(other, 3));
     checked.holds = checked.holds && largest <= *expected.at_most_share * other;
   }

@@ -20,11 +20,11 @@ using firmware::SupervisorState;
 
 using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
-/// A brake with twice the torque that the paper's motor needs against friction: Nm. 20 Nm stop it from 250 mm/s in 9
+/// Torque of the brake: twice what the paper's motor needs to overcome friction. It stops the axis from 250 mm/s in 9
 /// mm.
 constexpr double kBrake_Nm = 20.0;
 
-/// A tenth of the paper's friction, on the paper's screw: what is let go runs on for a metre.
+/// A drive with a tenth of the paper's friction, on the paper's screw: without current, the axis coasts for a metre.
 sim::DriveDescription light_drive(std::string_view name) {
   sim::DriveDescription drive = *paper_drive(name);
   const auto effect = [](const char* kind, std::map<std::string, double> values) {
@@ -84,7 +84,7 @@ class Trial {
     apply(trial_.first);
     injected_at_ = machine_.samples();
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
-    // A light axis that is let go at 250 mm/s coasts for 8 s.
+    // A light axis without current coasts for 8 s from 250 mm/s.
     const int longest = (trial_.light ? 14000 : 4000) + 3 * stretch();
     for (int k = 0; k < longest && !is_over(); ++k) {
       if (k == trial_.delay && trial_.second.injection != nullptr) {
@@ -113,12 +113,12 @@ class Trial {
     return std::abs(machine_.plant(axis).truth().w) * axes_[axis].drive.data.lead;
   }
 
-  /// By the reference's own acceleration.
+  /// Computed with the reference's own acceleration.
   static double usual_gain_mm_s(const Stop& stop) {
     return stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
   }
 
-  /// By the true drive and brake, along the ramp; and once more from the speed that a second fault has given it.
+  /// Computed with the true drive and brake, along the ramp; and again from the speed after a second fault.
   StoppingWay by_formula(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     StoppingFigures figures = stopping_figures(axes_[axis].drive, std::max(stop.top_speed_mm_s, 1.0),
@@ -202,7 +202,7 @@ class Trial {
     if (trial_.motion == TrialMotion::starting && !all_enabled() && k < kPatience) return;
     if (path_runs || (trial_.motion == TrialMotion::move && k < kPatience)) return;
     if (trial_.motion == TrialMotion::stopping && k < kPatience / 2) return;
-    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what only shows at a drop
+    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what shows only when an axis drops
     enable();
     if (k % stretch() == 100) jog(k / stretch() % 2 == 0 ? 1.0 : -1.0);
   }
@@ -237,8 +237,8 @@ class Trial {
     if (fault_seen_) follow_stop();
   }
 
-  /// Of an amplifier that drives without its enable only the time can be stated. Its axis coasts from where its power
-  /// is cut.
+  /// For an amplifier that drives without its enable, only the time can be stated. Its axis coasts from the place where
+  /// the power is cut.
   void follow_stop() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const double x = machine_.plant(i).truth().x;
@@ -298,7 +298,7 @@ class Trial {
     result.reaction_s = static_cast<double>(*fault_seen_ - *injected_at_) * period_s;
     result.stop_s = static_cast<double>(machine_.samples() - *fault_seen_) * period_s;
     result.whole_way_mm = whole_way_mm_;
-    double stated_s = 0.0;  ///< when the last axis stands, since the fault
+    double stated_s = 0.0;  ///< from the fault until the last axis stands
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const StoppingWay stated = by_formula(i);
       stated_s = std::max(stated_s, static_cast<double>(stops_[i].begin - *fault_seen_) * period_s + stated.time_s);

@@ -115,7 +115,7 @@ double Path::distance_to(const PlanePoint& point) const {
 
 namespace {
 
-/// As the host's planner would send it, but with limits along the path, as in the paper.
+/// Nodes as from the host's planner, but with limits along the path, as in the paper.
 PlannedPath plan_along(const Path& path, const PathLimits& limits, double sample_period_s) {
   PlannedPath planned;
   double length = 0.0;

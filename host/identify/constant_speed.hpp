@@ -16,12 +16,12 @@ struct ConstantSpeed {
 };
 
 struct ConstantSpeedOptions {
-  double settle_s = 0.3;    ///< dropped at the start, as in the paper; at most half of a stretch
+  double settle_s = 0.3;    ///< dropped at the start, as in the paper; at most half of the interval
   double shortest_s = 0.3;  ///< shortest duration of a constant speed, including the dropped part
   double tolerance = 0.03;  ///< relative change of the smoothed speed that still counts as constant
 };
 
-/// Finds every stretch, in order of time, from the speed smoothed over 0.1 s (from the encoder where there is one).
+/// Finds every interval, in order of time, from the speed smoothed over 0.1 s (from the encoder if there is one).
 std::vector<ConstantSpeed> find_constant_speeds(const Record& record, const sim::DataSheet& data,
                                                 const ConstantSpeedOptions& options = {});
 

@@ -1,4 +1,4 @@
-// A solver's sparse matrix, written out.
+// Converts a solver's sparse matrix to a dense one.
 #pragma once
 
 #include <ceres/crs_matrix.h>

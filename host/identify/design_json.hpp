@@ -1,4 +1,4 @@
-// A design as other programs read it: `axis-design/1`.
+// A design as JSON for other programs: `axis-design/1`.
 #pragma once
 
 #include <nlohmann/json.hpp>

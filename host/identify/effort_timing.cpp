@@ -42,7 +42,7 @@ std::optional<Motion> sliding_motion(const Record& record, const sim::DataSheet&
     const double step = record.has_position() ? encoder_step(record, data) * *options.cutoff_Hz / data.lead : 0.0;
     options.deadband = std::max({kSlowShare * quantile(speeds, 0.95), step, std::numeric_limits<double>::min()});
     return prepare_motion(record, data, options);
-  } catch (const Failure&) {  // too short, or no effort can be had: nothing is told
+  } catch (const Failure&) {  // too short, or without torque or force: no information
     return {};
   }
 }
@@ -68,7 +68,7 @@ std::vector<Terms> terms_of(const Motion& motion) {
   return rows;
 }
 
-/// How the instant moves from where the effort was taken to act, with its variance; empty where that is not told.
+/// Correction of the time at which the effort acts, with its variance; empty if the record does not determine it.
 struct Step {
   double samples, variance;
 };
@@ -103,7 +103,7 @@ void write_timing(Record& record, const EffortTiming& timing) {
   record.header[kEstimatedKey] = "1";
 }
 
-/// The motion of the axis itself, where the encoder errs.
+/// The true motion of the axis if the encoder has an error.
 void take_off_encoder_error(const sim::Drive& drive, Motion& motion) {
   if (drive.encoder_error.empty()) return;
   std::vector<double> correction(motion.travel.size());
@@ -120,7 +120,7 @@ void take_off_encoder_error(const sim::Drive& drive, Motion& motion) {
   }
 }
 
-/// What the effects besides inertia and friction need, low-passed as the motion is; empty where there are none.
+/// Torque or force of the effects other than inertia and friction, low-passed like the motion; empty if there are none.
 std::vector<double> further_effort(const sim::DriveDescription& model, const Motion& motion) {
   sim::DriveDescription base = model;
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });

@@ -32,8 +32,8 @@ EffortTiming effort_timing_of(const Record& record);
 
 /// Estimates when the records' currents act and writes that to their headers, unless a header states it. Fits the
 /// inverse model (inertia, friction by direction with a curve over the speed, a curve over the travel) together with
-/// the time, on the samples that slide of each record, and combines the result with the prior. Effects that `model` has
-/// besides are taken off first: one that is missing may bias the time. Uses the prior alone if a record does not
+/// the time, on the samples that slide of each record, and combines the result with the prior. Further effects of
+/// `model` are subtracted first; a missing effect may bias the time. Uses the prior alone if a record does not
 /// determine the time, or gives one that no logger can cause. One logger wrote all records: they share the weighted
 /// mean, with a deviation widened to their scatter if that is larger. A time that was estimated before is estimated
 /// again.

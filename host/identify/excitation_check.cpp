@@ -29,7 +29,7 @@ std::string largest_seen(const ExcitationSummary& summary) {
              : fmt::format("currents up to {:.2g} A", summary.peak_current_A);
 }
 
-/// What to do instead, in volts where the command is known.
+/// The recommended excitation, in volts if the command is known.
 std::string better_excitation(const ExcitationSummary& summary, const sim::DataSheet& data) {
   std::string amplitude = "larger steps";
   if (summary.peak_command_V == 0.0 && summary.peak_current_A > 0.0)

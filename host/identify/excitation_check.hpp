@@ -12,7 +12,7 @@ namespace host {
 /// Condition number of a regression beyond which a relative error of 2 % in the signals may pass unattenuated.
 inline constexpr double kPoorCondition = 50.0;
 
-/// How the records moved the axis. Speeds in rad/s or m/s.
+/// Motion of the axis in the records. Speeds in rad/s or m/s.
 struct ExcitationSummary {
   double forward_s = 0.0;  ///< time spent sliding beyond the threshold
   double backward_s = 0.0;

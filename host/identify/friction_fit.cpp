@@ -84,7 +84,7 @@ Range range_of(const std::vector<CurvePoint>& points) {
 }
 
 std::vector<double> weights_of(const std::vector<CurvePoint>& points, double level) {
-  // The friction law itself is not exact, so the error of each point is at least 0.1 % of the largest friction.
+  // The friction law itself is not exact, so each point has an error of at least 0.1 % of the largest friction.
   std::vector<double> weights;
   for (const CurvePoint& point : points) weights.push_back(1.0 / std::hypot(point.standard_error, 1e-3 * level));
   return weights;

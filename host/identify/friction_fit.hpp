@@ -19,7 +19,7 @@ struct CurvePoint {
 /// A fitted curve. Levels are magnitudes; [0] forward, [1] backward.
 struct FrictionFit {
   FrictionLaw law;
-  bool has_stribeck = false;  ///< false: the points show no static friction above Coulomb's, or were too few to tell
+  bool has_stribeck = false;  ///< false: the points show no static friction above the Coulomb level, or are too few
   Estimate viscous;
   std::array<Estimate, 2> coulomb{}, static_level{}, omega1{}, omega2{};  ///< intervals empty (value, value) if unknown
   double rms = 0.0;                                                       ///< of the residuals, Nm or N

@@ -115,7 +115,7 @@ void cross_check(FrictionIdentification& result) {
   result.warnings.push_back(text);
 }
 
-/// A model that claims equal directions keeps that form; where the points deny it, the user has to know.
+/// A model with equal directions keeps that form; if the points contradict it, a warning says so.
 void warn_of_unequal_directions(FrictionIdentification& result) {
   constexpr double kClearlyWorse = 2.0;
   const FrictionFit free = fit_friction(by_control_signal(result.points), false);

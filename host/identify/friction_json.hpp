@@ -1,4 +1,4 @@
-// A friction curve as other programs read it: `axis-friction/1`.
+// A friction curve as JSON for other programs: `axis-friction/1`.
 #pragma once
 
 #include <nlohmann/json.hpp>

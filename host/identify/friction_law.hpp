@@ -1,4 +1,4 @@
-// The friction curve (19) of a model, whichever of the model file's forms it was written in.
+// The friction curve (19) of a model, from any of the model file's forms.
 #pragma once
 
 #include "sim/drive_description.hpp"
@@ -27,7 +27,7 @@ struct FrictionLaw {
 /// From the effects `viscous`, `coulomb`, `stribeck` (per direction or one value for both).
 FrictionLaw friction_law(const sim::DriveDescription& model);
 
-/// Whether the model claims one Coulomb level for both directions; a re-fit keeps that form.
+/// Whether the model has one Coulomb level for both directions; a refit keeps that form.
 bool is_symmetric(const sim::DriveDescription& model);
 
 }  // namespace host

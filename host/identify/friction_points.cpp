@@ -48,7 +48,7 @@ class SoftMean {
     return mean / static_cast<double>(length_);
   }
 
-  /// Mean of the difference from sample to sample: what the soft ends differ by, over the length.
+  /// Mean difference from sample to sample: the difference of the soft ends over the length.
   double of_slope(const std::vector<double>& signal) const {
     double first = 0.0, last = 0.0;
     for (std::size_t j = 0; j < weights_.size(); ++j) {
@@ -74,7 +74,7 @@ struct Signals {
   double period_s = 0.0;
 };
 
-/// Integral of the effort's fast part over the inertia: what the speed does between the encoder's counts.
+/// Integral of the effort's fast part over the inertia: the motion of the speed between encoder counts.
 std::vector<double> speed_jitter(const std::vector<double>& effort, double inertia, double period_s) {
   constexpr double kSlowest_Hz = 10.0;  // below, the position loop holds the speed
   const double rate_Hz = 1.0 / period_s;

@@ -21,12 +21,12 @@ struct FrictionPoint {
   double standard_error = 0.0;  ///< of `effort`, from the scatter of its parts
   /// From the disturbance: Ka Kt d + B w, with the B of the observer's design; empty without a position.
   std::optional<double> observed_effort;
-  double duration_s = 0.0;  ///< averaged over
-  double turns = 0.0;       ///< of the screw; whole where at least one fits, 0 for a linear drive
+  double duration_s = 0.0;  ///< duration of the average
+  double turns = 0.0;       ///< of the screw; whole if at least one fits, 0 for a linear drive
   double jitter =
       0.0;  ///< standard deviation of the speed above 10 Hz that the control signal itself causes, rad/s or m/s
-  std::size_t record = 0;  ///< which of the records
-  double start_s = 0.0;    ///< where in it
+  std::size_t record = 0;  ///< index of the record
+  double start_s = 0.0;    ///< its start in that record
 
   /// Whether the axis really slides all the time. Where the speed jitters through zero, friction changes its sign
   /// within the stretch and its mean is too small: the lowest jog speeds of a drive with a noisy tachometer.

@@ -34,7 +34,7 @@ void require_same_rate(const std::vector<Record>& records) {
 
 void require_enough(const std::vector<Record>& records) {
   constexpr double kLowestRate_Hz = 50.0;  // five samples in a period of the lowest cut-off of the filters, 10 Hz
-  constexpr double kShortest_s = 0.2;      // twice the sliding that is asked of each direction
+  constexpr double kShortest_s = 0.2;      // twice the required sliding in each direction
   for (const Record& record : records) {
     require_rate(record, kLowestRate_Hz, "see the axis accelerate");
     require_duration(record, kShortest_s, "hold a movement");
@@ -81,7 +81,7 @@ sim::DriveDescription model_from(const sim::DriveDescription& drive, const Rigid
 void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& estimate,
                          std::vector<std::string>& warnings) {
   for (sim::EffectEntry& entry : model.effects) {
-    if (entry.kind == "inertia") continue;  // no other value would stand for it
+    if (entry.kind == "inertia") continue;  // no other value could replace it
     const sim::EffectInfo& info = *sim::find_effect(entry.kind);
     const auto key = [&](const char* id) { return info.parameter(id)->key(model.data.kind); };
     if (entry.has("positive") && (entry.at("positive") < 0.0 || entry.at("negative") > 0.0)) {
@@ -124,9 +124,9 @@ std::string dropped_effects(const sim::DriveDescription& drive) {
   return kinds;
 }
 
-/// Widens the intervals of an estimate of inverse models, `estimator`, by what is not known of the instants at which
-/// the efforts act. Where instants and parameters are found together, the covariance of the parameters is that of known
-/// instants and, for each instant, its variance times the square of how the parameters go with it.
+/// Widens the intervals of an estimate with inverse models, `estimator`, by the uncertainty of the times at which the
+/// efforts act. If times and parameters are estimated together, the covariance of the parameters is that with known
+/// times plus, for each time, its variance times the square of the parameters' sensitivity to it.
 template <typename Estimator>
 void widen_by_timing(const std::vector<Record>& records, const std::vector<Motion>& motions, Estimator estimator,
                      RigidEstimate& estimate) {
@@ -153,7 +153,7 @@ void widen_by_timing(const std::vector<Record>& records, const std::vector<Motio
   }
 }
 
-/// The records as one of the channels moves them.
+/// The motions of the records by one of the channels.
 struct Attempt {
   MotionOptions options;
   std::vector<Motion> motions;
@@ -164,8 +164,9 @@ struct Attempt {
   bool beside_travel = false;
 };
 
-/// The estimate beside a curve over the travel, where that takes most of what inertia and friction leave and still
-/// tells inertia from it (a steady swing does not: its acceleration goes with the position).
+/// The estimate together with a curve over the travel, if that curve explains most of the residual of inertia and
+/// friction and the inertia remains identifiable (not in a steady oscillation, whose acceleration is proportional to
+/// the position).
 std::optional<RigidEstimate> estimate_beside_travel(const Attempt& made) {
   constexpr double kMostOfIt = 0.5;   // of the norm: three quarters of the square
   constexpr double kKnown = 0.3;      // of the inertia, half its interval

@@ -44,11 +44,12 @@ struct Identification {
 /// Identifies from one or several (training) records of the same drive and sampling period. `drive` gives the data
 /// sheet; a base effect that it has in the one-level form keeps that form, other effects are not taken over (a warning
 /// says so). sliding_ls corrects the tachometer by the encoder first, and takes the motion from it where the position
-/// differentiates clearly worse; the paper's methods take the records as they are. Where a curve over the travel takes
-/// most of what inertia and friction leave (gravity on an arm, a spring), the filtered methods estimate beside it.
-/// The model can be read again: friction that no drive has stands there at its bound, and levels of which one would
-/// push as one level for both directions; warnings say so, the estimate stays as it was. Throws Failure(refused) for
-/// want of excitation, Failure(bad_input) for records that do not fit the drive.
+/// differentiates clearly worse; the paper's methods take the records as they are. If a curve over the travel explains
+/// most of the residual of inertia and friction (gravity on an arm, a spring), the filtered methods estimate together
+/// with it. The model can always be read again: an impossible friction value is set to its bound, and two levels of
+/// which one would drive the axis are replaced by one level for both directions. Warnings say so; the estimate is not
+/// changed. Throws Failure(refused) for insufficient excitation, Failure(bad_input) for records that do not fit the
+/// drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});
 

@@ -1,4 +1,4 @@
-// An identification as other programs read it: `axis-identification/1`.
+// An identification as JSON for other programs: `axis-identification/1`.
 #pragma once
 
 #include <nlohmann/json.hpp>

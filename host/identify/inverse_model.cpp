@@ -55,8 +55,8 @@ std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion
 
 namespace {
 
-/// A model's effort as the regression sees it. What repeats along the travel may be faster than the filter that the
-/// measured effort has passed, and passes the same one; speed and acceleration have passed it already.
+/// A model's effort after the regression's filter. Effects that repeat along the travel may be faster than this filter,
+/// so they pass it like the measured effort; speed and acceleration have passed it already.
 class SeenEffort {
  public:
   explicit SeenEffort(const sim::DriveDescription& model) : drive_(model) {
@@ -79,14 +79,14 @@ class SeenEffort {
 
  private:
   sim::Drive drive_;
-  std::optional<sim::Drive> smooth_;  ///< without what repeats along the travel; empty where nothing does
+  std::optional<sim::Drive> smooth_;  ///< without effects that repeat along the travel; empty if there are none
 };
 
 }  // namespace
 
 namespace {
 
-/// By more than sensors fake at rest: 10 counts, or speeds of one sign beyond noise.
+/// Moves by more than sensors may show at rest: 10 counts, or speeds of one sign beyond noise.
 bool has_moved(const Record& record, const sim::DataSheet& data) {
   constexpr double kCounts = 10.0, kDeviations = 5.0;
   if (record.has_position()) {

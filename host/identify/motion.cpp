@@ -32,8 +32,8 @@ void trim(std::vector<double>& signal, std::size_t margin) {
   signal.erase(signal.begin(), signal.begin() + static_cast<std::ptrdiff_t>(margin));
 }
 
-/// The paper's, or a tenth of the top speed where that is less: a slow axis slides too. Not below what noise and the
-/// encoder's last digit fake at standstill.
+/// The paper's dead band, or a tenth of the top speed if that is less, because a slow axis slides too. Not below the
+/// speed that noise and the encoder's last digit may show at standstill.
 double usual_deadband(const std::vector<double>& speed, const sim::DataSheet& data, double cutoff_Hz, double rate_Hz) {
   if (data.kind == sim::DriveKind::linear) return 0.0;
   constexpr double kTop = 0.99, kDeviations = 3.0;
@@ -250,7 +250,7 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
     motion.counts = slides(motion.speed, motion.deadband, reach, motion.decimation);
   } else {
     motion.counts.assign((motion.speed.size() + motion.decimation - 1) / motion.decimation, true);
-    // Nothing counts that the filter mixes with commands from before the record.
+    // Excludes samples that the filter mixes with commands from before the record.
     const std::size_t first = delivered.unknown_rows > 0 ? delivered.unknown_rows + reach : 0;
     for (std::size_t k = 0; k < motion.counts.size() && k * motion.decimation + kMotionMargin < first; ++k)
       motion.counts[k] = false;

@@ -11,8 +11,8 @@
 namespace host {
 
 /// How the signals are prepared. Two recipes, chosen by the dead band:
-/// * dead band > 0: only samples count that slide for sure, that is whose speed stays beyond the dead band as far as
-///   the filter reaches. The command is taken in the middle of its hold. No decimation.
+/// * dead band > 0: only samples count at which the axis certainly slides: the speed stays beyond the dead band as far
+/// as the filter reaches. The command is taken in the middle of its hold. No decimation.
 /// * dead band 0: every sample counts, as in published inverse-model identification (parallel filtering): all signals,
 ///   the sign of the speed included, pass the same steep filter and are decimated. The command counts at its sample.
 struct MotionOptions {
@@ -20,10 +20,11 @@ struct MotionOptions {
   std::optional<double> deadband;
   std::optional<double> cutoff_Hz;        ///< default: choose_cutoff
   std::optional<std::size_t> decimation;  ///< default 1 with a dead band, else sample rate / cut-off
-  /// Whose command path stands between command and motor (converter, delay, torque constant along the travel); none: a
-  /// command acts as it was sent.
+  /// Drive whose command path is between command and motor (converter, delay, torque constant along the travel); none:
+  /// a command acts unchanged.
   const sim::Drive* command_path = nullptr;
-  /// Speed and acceleration from the speed channel, though there is a position; its lag behind that is taken out.
+  /// Takes speed and acceleration from the speed channel even if there is a position; its lag behind the position is
+  /// removed.
   bool by_speed = false;
 };
 
@@ -40,7 +41,7 @@ struct Motion {
   std::vector<double> effort;        ///< of the motor, filtered, Nm or N
   std::vector<bool> counts;          ///< by decimated sample: whether it may be used
 
-  /// A signal of full rate passed through what the regression sees: decimated, and only the samples that count.
+  /// Reduces a signal of full rate to the samples of the regression: decimated, and only those that count.
   std::vector<double> seen(const std::vector<double>& signal) const;
 };
 
@@ -48,8 +49,8 @@ struct Motion {
 /// Throws Failure(bad_input) when the drive's constants are missing.
 std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
 
-/// What a record's sensor leaves on the acceleration: encoder steps, or tachometer noise where there is no encoder or
-/// the speed channel was asked for.
+/// Noise of the acceleration due to a record's sensor: encoder steps, or tachometer noise if there is no encoder or the
+/// speed channel was requested.
 class AccelerationNoise {
  public:
   AccelerationNoise(const Record& record, const sim::DataSheet& data, bool by_speed = false);
@@ -61,20 +62,20 @@ class AccelerationNoise {
   double density_ = 0.0, power_ = 1.0;
 };
 
-/// Where the guard filter in front of a motion's decimation cuts off, Hz.
+/// Cut-off of the guard filter before a motion's decimation, Hz.
 double guard_cutoff_Hz(const Motion& motion);
 
 /// motor_effort through a drive's command path and the filter, at the instants of the samples.
 struct DeliveredEffort {
   std::vector<double> effort;    ///< Nm or N, one a row
-  std::size_t unknown_rows = 0;  ///< at the start: what acts there was sent before the record began
+  std::size_t unknown_rows = 0;  ///< at the start: their effort was commanded before the record began
 };
 DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool sliding_only,
                                  const sim::Drive* command_path);
 
-/// The record's shaft speed from its encoder after the zero-phase filter, or from the speed channel where there is no
-/// encoder or that is asked for: then without its lag, up to 20 ms, for a driver computes it from positions that have
-/// been.
+/// The record's shaft speed from its encoder after the zero-phase filter, or from the speed channel if there is no
+/// encoder or the channel was requested. Its lag of up to 20 ms is removed, because a driver computes it from past
+/// positions.
 std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz,
                                  bool by_speed = false);
 

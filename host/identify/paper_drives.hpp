@@ -1,4 +1,4 @@
-// The drives of Erkorkmaz & Altintas, IJMTM 41 (2001), Table 1: what the demonstration runs on, and a data sheet for
+// The drives of Erkorkmaz & Altintas, IJMTM 41 (2001), Table 1: used by the demonstration, and as data sheet for
 // records of a drive called x or y.
 #pragma once
 
@@ -16,8 +16,8 @@ namespace host {
 /// their velocity constants. Empty for any other name.
 std::optional<sim::DriveDescription> paper_drive(std::string_view name);
 
-/// The paper's drive that a record names, where no data sheet was given; says so in `warnings`. Throws Failure(usage)
-/// where it names none.
+/// The paper's drive that a record names, if no data sheet was given; says so in `warnings`. Throws Failure(usage) if
+/// it names none.
 sim::DriveDescription drive_named_by(const Record& record, std::vector<std::string>& warnings);
 
 }  // namespace host

@@ -25,7 +25,7 @@ double half_width(const Interval& interval) { return 0.5 * (interval[1] - interv
 
 bool is_inside(double value, const sim::ParameterInfo& info) { return value >= info.lower && value <= info.upper; }
 
-/// A sign that the physics does not fix: components of a phase, offsets.
+/// Parameters whose sign is free: components of a phase, offsets.
 bool has_either_sign(const sim::ParameterInfo& info) { return info.lower < 0.0 && info.upper > 0.0; }
 
 /// A value on a bound of the fit is no estimate. A bound at zero is allowed: the effect is absent.

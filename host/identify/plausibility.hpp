@@ -16,7 +16,7 @@ struct Doubt {
 };
 
 /// Signs and ranges of all parameters; of the fitted ones also: on a bound of the fit, interval wider than the value;
-/// friction against what the motor gives. Empty for a model that a drive can have.
+/// friction against the motor's torque. Empty for a possible model.
 std::vector<Doubt> doubts_of(const sim::DriveDescription& model);
 
 /// Their messages, for the warnings of a command.

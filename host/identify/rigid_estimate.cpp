@@ -94,7 +94,7 @@ Regression discrete_regression(const std::vector<Record>& records, const sim::Da
 
 constexpr int kCurveTerms = 8;
 
-/// Where the travel of all motions begins and how long it is.
+/// Beginning and length of the travel of all motions.
 std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Motion& motion : motions)

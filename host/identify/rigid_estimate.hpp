@@ -41,8 +41,8 @@ RigidEstimate discrete_least_squares(const std::vector<Record>& records, const s
 /// T = J dw/dt + B w (+ T+ or T-) regressed on filtered signals; serves every drive that has a position or a speed.
 RigidEstimate inverse_least_squares(const std::vector<Motion>& motions, Coulomb coulomb);
 
-/// The same with Coulomb friction and, beside it, a smooth curve over the travel (a cosine series of four waves at
-/// most): gravity on an arm or a spring would bend inertia and friction otherwise. The curve's mean goes to T+ and T-.
+/// The same with Coulomb friction and a smooth curve over the travel (a cosine series of at most four waves); otherwise
+/// gravity on an arm or a spring would bias inertia and friction. The curve's mean is added to T+ and T-.
 RigidEstimate least_squares_beside_travel(const std::vector<Motion>& motions);
 
 }  // namespace host

@@ -14,8 +14,8 @@ class ZeroPhaseLowPass {
   /// 4th-order Butterworth: -3 dB at the cut-off for one direction, -6 dB for both.
   static ZeroPhaseLowPass butterworth(double cutoff_Hz, double sample_rate_Hz);
 
-  /// 8th-order Chebyshev, gain 1 at 0 Hz, rippling up to 0.05 dB above (each way): steep, the usual guard before
-  /// decimation.
+  /// 8th-order Chebyshev, gain 1 at 0 Hz, with a ripple of up to 0.05 dB (each direction): steep, the usual guard
+  /// before decimation.
   static ZeroPhaseLowPass chebyshev(double cutoff_Hz, double sample_rate_Hz);
 
   /// Filtered signal of the same length. Any length.

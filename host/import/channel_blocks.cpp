@@ -49,7 +49,7 @@ class BlockReader {
 
   static bool is_name_key(std::string_view field) { return field == "Name" || field == "Channel name"; }
 
-  /// That behind the first field of a line of names.
+  /// Finds the separator: the character after the first field of a line of names.
   bool find_separator() {
     std::string_view rest = rest_.substr(0, kLookedAt);
     for (std::string_view line; take_line(rest, line);)
@@ -62,7 +62,7 @@ class BlockReader {
     return false;
   }
 
-  /// Leaves `line_` at the first row of numbers, and in `header_` the run of lines in front of it.
+  /// Sets `line_` to the first row of numbers, and `header_` to the lines directly before it.
   bool find_header() {
     bool is_run = false;
     for (std::size_t k = 0; k < kMostPreamble && next_line(); ++k) {
@@ -109,7 +109,7 @@ class BlockReader {
     return true;
   }
 
-  /// What a line of the header says of column `k`.
+  /// The entry of a header line for column `k`.
   std::string_view header_value(std::string_view key, std::size_t k) const {
     for (const Line& line : header_)
       if (line.fields.front().starts_with(key) && k < line.fields.size()) return line.fields[k];

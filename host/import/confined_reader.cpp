@@ -28,10 +28,10 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kMostMemory = 1024 * kMebibyte, kLongestText = kMebibyte, kMostColumns = 100'000;
 
-/// Seconds of a processor: a damaged file may make a library run in circles. Whole files take less than a tenth of it.
+/// Processor time, s: a damaged file may make a library loop for ever. Undamaged files take less than a tenth of it.
 unsigned time_limit_s(std::size_t bytes) { return 5U + static_cast<unsigned>(bytes / (16 * kMebibyte)); }
 
-/// What the parts of the answer begin with.
+/// First byte of the parts of the answer.
 enum class Part : char { column = 'c', header = 'h', preamble = 'p', layout = 'l', failure = 'f', end = 'e' };
 
 /// The child's end.
@@ -81,12 +81,12 @@ class Sender {
   int pipe_;
 };
 
-/// The parent's end. Trusts nothing that comes: the child may have been overrun.
+/// The parent's end. Trusts no received data, because a damaged file may have taken over the child.
 class Receiver {
  public:
   Receiver(int pipe, SteadyTime until) : pipe_(pipe), until_(until) {}
 
-  /// Whether the answer was whole; `failure` is set where the child refused the file.
+  /// Whether the answer was complete; `failure` is set if the child refused the file.
   bool take(Log& log, std::string& failure) {
     std::size_t numbers = 0;
     for (Part kind{}; bytes(&kind, sizeof kind);) {
@@ -160,7 +160,7 @@ class Receiver {
   bool timed_out_ = false;
 };
 
-/// `spare`: by how much the system's own end, without a signal that tells the reason, comes later.
+/// `spare`: delay of the system's hard limit, which ends the process without a signal that shows the reason.
 void limit(__rlimit_resource resource, rlim_t most, rlim_t spare = 0) {
   rlimit now{};
   getrlimit(resource, &now);
@@ -227,7 +227,7 @@ Log read_confined(const std::string& path, std::string_view library, Log (*read)
   Log log;
   log.path = path;
   std::string failure;
-  // a busy machine gives the child a part of a processor
+  // on a busy machine the child gets only a part of a processor
   Receiver receiver(ends[0], std::chrono::steady_clock::now() + std::chrono::seconds(3 * seconds));
   const bool whole = child > 0 && receiver.take(log, failure);
   close(ends[0]);

@@ -1,4 +1,4 @@
-// Reads a log by a library from elsewhere without trusting it.
+// Reads a log by a third-party library without trusting that library.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace host {
 
-/// What `read` makes of the file at `path`, in a process of its own that may neither write a file, nor take more than a
-/// gigabyte, nor run for long. `library` is named where it fails; load it before. Throws Failure (bad_input): that of
-/// `read`, or what became of the process.
+/// Runs `read` on the file at `path` in a separate process, which can neither write files nor use more than a gigabyte
+/// nor run for long, and returns its result. `library`: its name in messages; load it before. Throws Failure
+/// (bad_input): that of `read`, or the way in which the process ended.
 ///
 /// Why a fork and no program of its own: the Python module and installed copies of the library have no such program
 /// beside them. Why it is safe although callers have several threads: the C library makes its heap, its streams and its

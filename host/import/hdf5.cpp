@@ -126,7 +126,7 @@ class Hdf5Reader {
 
   Log read() {
     h5_.open();
-    h5_.set_error_printer(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions, not by the library
+    h5_.set_error_printer(H5E_DEFAULT, nullptr, nullptr);  // exceptions report failures, not the library
     h5_.load_no_plugins(0);
     const hid_t file = h5_.open_file(log_.path.c_str(), kReadOnly, H5P_DEFAULT);
     if (file < 0)
@@ -246,7 +246,7 @@ class Hdf5Reader {
     log_.columns.push_back({name, kind, {}, fmt::format("'{}' ({}) {}", name, kind, why)});
   }
 
-  /// One unit holds for all columns or fields; of several each has its own.
+  /// A single unit applies to all columns or fields; otherwise each has its own.
   static std::string unit_at(const std::vector<std::string>& units, std::size_t number) {
     if (units.size() == 1) return units.front();
     return number < units.size() ? units[number] : "";
@@ -328,7 +328,7 @@ class Hdf5Reader {
   Log log_;
   std::string refusal_;
   std::size_t objects_ = 0;
-  double announced_ = 0.0;  ///< numbers; a packed file may say more than the computer has room for
+  double announced_ = 0.0;  ///< numbers; a packed file may announce more than fits into memory
 };
 
 }  // namespace

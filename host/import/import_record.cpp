@@ -21,7 +21,7 @@ namespace host {
 
 namespace {
 
-/// One column of the record on its way: the numbers of its source, and their stamps.
+/// One column of the record while it is made: the numbers of its source, and their stamps.
 struct Source {
   const Mapping* mapping = nullptr;
   const LogColumn* column = nullptr;  ///< nullptr: the row number
@@ -238,7 +238,8 @@ class Importer {
     state_what_was_done(period_s, start, end);
   }
 
-  /// More than ten times the logged samples add no information, and a mistyped period would fill the memory.
+  /// Limit of resampling: more than ten times the logged samples add no information, and a mistyped period would fill
+  /// the memory.
   void refuse_hopeless(double period_s, double length_s) const {
     constexpr double kMostPerSample = 10.0;
     const double finest = static_cast<double>(longest()) * kMostPerSample;

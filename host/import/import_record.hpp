@@ -18,13 +18,13 @@ struct Unwrapping {
   double range = 0.0;
 };
 
-/// Of COLUMN=RANGE. Throws Failure(usage).
+/// Parses COLUMN=RANGE. Throws Failure(usage).
 Unwrapping parse_unwrapping(std::string_view text);
 
 struct ImportOptions {
   std::vector<Mapping> mappings;            ///< empty: every column keeps its name
-  std::optional<double> resample_period_s;  ///< make even samples of this period, and state what was done
-  std::string drive;                        ///< name of the drive; empty: as the log says, if it does
+  std::optional<double> resample_period_s;  ///< resample evenly with this period, and state it
+  std::string drive;                        ///< name of the drive; empty: the log's, if it has one
   std::vector<Unwrapping> unwrap{};
 };
 

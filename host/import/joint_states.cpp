@@ -18,7 +18,7 @@ namespace host {
 
 namespace {
 
-/// Of a bag, over all topics: a robot has some dozen.
+/// Limit of joints in a bag, over all topics: a robot has some dozen.
 constexpr std::size_t kMostJoints = 1000;
 
 /// Common Data Representation (OMG DDS-XTypes 1.3, 7.4): numbers lie at multiples of their size behind the

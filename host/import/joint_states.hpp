@@ -1,4 +1,4 @@
-// Joint states of ROS 2: messages of sensor_msgs/msg/JointState, as bags hold them.
+// Joint states of ROS 2: messages sensor_msgs/msg/JointState in bags.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace host {
 
 inline constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 
-/// The units of their columns, by the definition of the message: which of the two holds depends on the joint.
+/// The units of their columns, by the definition of the message; the joint determines which of the two applies.
 inline constexpr std::string_view kJointPositionUnit = "rad or m", kJointSpeedUnit = "rad/s or m/s",
                                   kJointEffortUnit = "Nm or N";
 
-/// What a bag says of one of its topics.
+/// A bag's description of one of its topics.
 struct BagTopic {
   std::string name, type, encoding;
 
@@ -29,12 +29,12 @@ class JointStates {
  public:
   explicit JointStates(std::string_view path) : path_(path) {}
 
-  /// One message, in CDR with its encapsulation header; `received_ns` counts where its own stamp is zero. Throws
-  /// Failure (bad_input) where it is damaged, or with it the log grows too large.
+  /// Adds one message, in CDR with its encapsulation header; `received_ns` is used if its own stamp is zero. Throws
+  /// Failure (bad_input) if it is damaged, or if the log becomes too large.
   void add(const std::string& topic, std::string_view message, std::int64_t received_ns);
 
-  /// A column for each quantity of each joint. Throws Failure (bad_input) that lists the bag's topics where none of
-  /// them has joint states.
+  /// A column for each quantity of each joint. Throws Failure (bad_input) listing the bag's topics if none of them has
+  /// joint states.
   Log log(const std::vector<BagTopic>& topics) const;
 
  private:

@@ -35,7 +35,7 @@ std::string without_colon(std::string_view name) {
 
 constexpr std::string_view kSqliteMagic = "SQLite format 3", kHdf5Magic = "\x89HDF";
 
-/// The first bytes of a file; none of a pipe, which gives its bytes only once.
+/// The first bytes of a file; empty for a pipe, whose bytes can be read only once.
 std::string start_of(const std::string& path) {
   std::string start(16, '\0');
   std::error_code unknown;
@@ -46,7 +46,7 @@ std::string start_of(const std::string& path) {
   return start;
 }
 
-/// Files that no library of Debian reads, or that hold a log in a wrapping.
+/// Files that no library of Debian reads, or that contain a log in an archive.
 void refuse_unread(std::string_view start, const std::string& path) {
   struct Unread {
     std::string_view magic, what;

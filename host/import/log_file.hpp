@@ -12,15 +12,15 @@ namespace host {
 
 struct LogColumn {
   std::string name;  ///< variable in a .mat file (`log(2)`, `s.speed`), heading in a table, "" without heading
-  std::string kind;  ///< what it is, for messages: "double, 24841 x 1"
+  std::string kind;  ///< type and size, for messages: "double, 24841 x 1"
   std::vector<double> values;  ///< NaN where the field is empty
-  std::string fault;           ///< why the values cannot be used, or stop early; empty: they are good
+  std::string fault;           ///< why the values cannot be used, or end early; empty: no fault
   double last_digit = 0.0;     ///< weight of the finest digit in the text; 0: binary numbers
-  std::string unit{};          ///< as the file gives it apart from the name: a line of units, a header; may be empty
+  std::string unit{};          ///< from the file, separate from the name: a line of units, a header; may be empty
   std::string time{};          ///< name of the column that holds its own time stamps; empty: the log's
 };
 
-/// Lines of a preamble that are kept, and bytes of each: more than any logger known here writes (TwinCAT: 24).
+/// Limits of a preamble: number of lines, and bytes of each line; more than any known logger writes (TwinCAT: 24).
 inline constexpr std::size_t kMostPreamble = 100, kLongestPreamble = 400;
 
 struct Log {
@@ -29,9 +29,9 @@ struct Log {
   std::map<std::string, std::string> header;  ///< `# key: value` lines of a table
   std::size_t first_line = 0;                 ///< line of row 0 in a table; 0: not a table
   std::string layout = "table";               ///< what kind of file it is: "twincat-scope", "camonitor", "mat", …
-  std::vector<std::string> preamble{};  ///< the lines in front of the table, remarks included; at most kMostPreamble
+  std::vector<std::string> preamble{};        ///< the lines before the table, including remarks; at most kMostPreamble
 
-  /// By name, else by number ("3", "#3", from 1). Throws Failure(bad_input) that lists what there is.
+  /// By name, else by number ("3", "#3", from 1). Throws Failure(bad_input) listing the columns.
   const LogColumn& find(std::string_view name) const;
 
   /// "t (double, 24841 x 1), qm (…)".
@@ -46,16 +46,17 @@ struct Log {
 /// each value) and SINUMERIK traces (XML) are known by their content. Throws Failure(bad_input).
 Log read_log(const std::string& path);
 
-/// Whether a file may hold much else beside its numbers (pictures in a bag), or packs them: its size says little.
+/// Whether a file may contain much besides its numbers (pictures in a bag), or packs them, so that its size does not
+/// limit the memory.
 bool is_container(const std::string& path);
 
-/// read_log of a file that is already in memory, of the kinds that no library from elsewhere reads.
+/// read_log of a file in memory, for the kinds that need no third-party library.
 Log parse_log(std::string_view bytes, std::string_view name);
 
-/// read_log of text that is already in memory: whichever of the text layouts it has.
+/// read_log of text in memory, in any of the text layouts.
 Log parse_log_text(std::string_view text, std::string_view name);
 
-/// read_log of a table that is already in memory.
+/// read_log of a table in memory.
 Log parse_table(std::string_view text, std::string_view name);
 
 /// A table whose header stands above the channels, key by key, with a time column in front of one channel or of several
@@ -78,7 +79,7 @@ Log parse_npz(std::string_view bytes, std::string_view path);
 Log parse_mcap(std::string_view bytes, std::string_view path);
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 
-/// read_log of files that libraries from elsewhere read: in a process of its own (confined_reader.hpp).
+/// read_log of files that third-party libraries read, in a separate process (confined_reader.hpp).
 Log read_mat(const std::string& path);
 Log read_hdf5(const std::string& path);
 Log read_rosbag(const std::string& path);

@@ -21,7 +21,7 @@ bool is_name_character(char c) {
          byte >= 0x80;
 }
 
-/// factor * source + shift, while it is being put together.
+/// factor * source + shift, while it is parsed.
 struct Linear {
   double factor = 0.0;
   double shift = 0.0;

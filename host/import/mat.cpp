@@ -140,7 +140,7 @@ void append_array(const matvar_t& variable, const std::string& name, const std::
 
 constexpr int kDeepestStruct = 8;
 
-/// As many numbers as the variable says that it holds; a packed file may say more than the computer has room for.
+/// The announced number of values of a variable; a packed file may announce more than fits into memory.
 double announced_numbers(const matvar_t& variable, int depth) {
   double count = 1.0;
   for (int k = 0; k < variable.rank; ++k) count *= static_cast<double>(variable.dims[k]);
@@ -192,7 +192,7 @@ Log read_by_matio(const std::string& path) {
   const MatLibrary& matio = mat_library();
   if (ends_within_variable(path))
     throw Failure(ExitCode::bad_input, fmt::format("{}: cut off within a variable; save it again", path));
-  matio.log_to("axistool", [](int, char*) {});  // failures are told by the exceptions, not by the library
+  matio.log_to("axistool", [](int, char*) {});  // exceptions report failures, not the library
   const std::unique_ptr<mat_t, CloseMat> file(matio.open(path.c_str(), MAT_ACC_RDONLY));
   if (!file)
     throw Failure(ExitCode::bad_input,

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// The functions of matio that read.
+/// The functions of matio that are needed for reading.
 struct MatLibrary {
   decltype(&Mat_LogInitFunc) log_to = nullptr;
   decltype(&Mat_Open) open = nullptr;

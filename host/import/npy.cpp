@@ -91,7 +91,7 @@ class NpyReader {
     by_columns_ = after("'fortran_order':").starts_with("True");
   }
 
-  /// What stands behind a key of the header, without blanks in front.
+  /// The text after a key of the header, without leading blanks.
   std::string_view after(std::string_view key) const {
     const std::size_t at = header_.find(key);
     if (at == std::string_view::npos)

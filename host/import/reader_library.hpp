@@ -1,5 +1,5 @@
-// Libraries that read one kind of log, loaded when the first such file is read: they bring some forty further libraries
-// with them, which no other command of axistool should wait for.
+// Libraries that read one kind of log. They are loaded when the first such file is read, because they load some forty
+// further libraries, for which no other command should wait.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace host {
 
-/// As the dynamic linker knows the one of which the headers were used to build this program, and its Debian package.
+/// File name for the dynamic linker, of the version whose headers were used for this program; and its Debian package.
 struct LibraryName {
   std::string file, package;
 };
@@ -21,7 +21,7 @@ extern const LibraryName kMatio, kHdf5, kSqlite, kLz4, kZstd;
 /// Stays loaded until the program ends. Throws Failure (bad_input) when it is not installed, or lacks a function.
 class ReaderLibrary {
  public:
-  /// `what` it reads, for messages: "MATLAB files".
+  /// `what`: the files that it reads, for messages: "MATLAB files".
   ReaderLibrary(std::string_view what, const LibraryName& name) : library_(name.file), name_(name) {
     if (!library_.is_loaded())
       throw Failure(ExitCode::bad_input,

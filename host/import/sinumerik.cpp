@@ -29,7 +29,7 @@ std::string unescaped(std::string_view text) {
   return plain;
 }
 
-/// Takes `name="value"` off the inside of a tag; false at its end.
+/// Reads the next `name="value"` of a tag; false at its end.
 bool take_attribute(std::string_view& inside, std::string_view& name, std::string_view& value) {
   const std::size_t equal = inside.find('=');
   if (equal == std::string_view::npos) return false;

@@ -80,7 +80,7 @@ class TableReader {
     return layout_.number(field).has_value() || parse_clock(field).has_value();
   }
 
-  /// Leaves `line_` at the first line that has the table's fields. What stands in front is remarks or a preamble.
+  /// Sets `line_` to the first line that has the table's fields. Earlier lines are remarks or a preamble.
   void find_table() {
     std::size_t preamble = 0;
     while (next_line()) {

@@ -17,9 +17,10 @@ namespace {
 
 /// Degrees of freedom of the innovations (Lange et al. 1989).
 constexpr double kDegrees = 4.0;
-/// A memory below this part of its usual size counts as none: the prior favours that, like two earlier observations.
+/// A memory below this part of its usual size counts as zero: the prior favours zero with the weight of two
+/// observations.
 constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
-/// Where a fit that looks for a large memory begins.
+/// Starting size of a fit that searches for a large memory.
 constexpr double kLargeSize = 0.1;
 constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
 /// Nats by which a round must still gain.
@@ -59,7 +60,7 @@ Eigen::LLT<MatrixXd> information_of(const MatrixXd& gram, const VectorXd& deviat
   return Eigen::LLT<MatrixXd>(scaled);
 }
 
-/// One step of the fixed point for the sizes of the memory. Returns the largest relative change.
+/// One step of the fixed-point iteration for the sizes of the memory. Returns the largest relative change.
 double renew_sizes(const Memory& memory, Index known, const MatrixXd& gram, const VectorXd& projection,
                    const VectorXd& deviations, VectorXd& sizes) {
   const VectorXd all = all_deviations(deviations, memory, sizes);
@@ -72,7 +73,7 @@ double renew_sizes(const Memory& memory, Index known, const MatrixXd& gram, cons
   for (std::size_t g = 0; g < memory.groups.size(); ++g) {
     const MemoryGroup& group = memory.groups[g];
     double& now = sizes(static_cast<Index>(g));
-    // MacKay's fixed point (ch. 27): what the data determine of the group's factors is what its variance lacks.
+    // MacKay's fixed point (ch. 27), from the number of the group's factors that the data determine.
     const double determined =
         static_cast<double>(group.count) - variance.segment(known + group.first, group.count).sum() / (now * now);
     const double squares = mean.segment(known + group.first, group.count).squaredNorm() + 2.0 * nothing;
@@ -165,7 +166,7 @@ VectorXd Evidence::gains(const EvidenceFit& fit, const MatrixXd& further, const 
   const VectorXd pull = weighed.transpose() * fit.residual;
   for (Index c = 0; c < pull.size(); ++c)
     if (sign[static_cast<std::size_t>(c)] > 0 && pull(c) < 0.0) return VectorXd::Constant(scales.size(), -HUGE_VAL);
-  // Along the axes of their own information; what lies in the span of the known columns adds nothing.
+  // Along the principal axes of their information; parts within the span of the known columns add nothing.
   constexpr double kOwnPart = 1e-9;
   const SymmetricSpectrum axes = symmetric_spectrum(own);
   const VectorXd along = axes.vectors.transpose() * pull;

@@ -13,12 +13,12 @@ namespace host {
 std::vector<double> even_knots(double low, double high, int count);
 std::vector<double> knots_by_factor(double low, double high, int count);
 
-/// Each knot's share in each row: piecewise linear functions that sum to 1, constant beyond the knots. Knots rise, and
-/// are 2 at least.
+/// Each knot's share in each row: piecewise linear functions that sum to 1, constant beyond the knots. At least two
+/// knots, ascending.
 Eigen::MatrixXd hats(const Eigen::VectorXd& at, const std::vector<double>& knots);
 
-/// The part of the columns that others do not explain. A memory that can explain what the model can would mask it: M.
-/// Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
+/// The part of the columns that the other columns do not explain. Without this, a memory could explain the same as the
+/// model and mask it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
 Eigen::MatrixXd beside(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& others);
 
 class MemoryBuilder {

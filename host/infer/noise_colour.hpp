@@ -1,4 +1,4 @@
-// Noise that remembers itself from row to row, beside noise that does not.
+// Noise that is correlated from row to row, plus white noise.
 //
 //   noise = d + r,   d_k = phi d_{k-1} + q_k,   r white
 //
@@ -19,8 +19,8 @@ struct RowRun {
 };
 
 struct NoiseColour {
-  double drift = 0.0;  ///< phi: what of the drift is left after a row, 0 to 0.98
-  double white = 0.0;  ///< psi: 0 where nothing is white beside the drift, phi where all is
+  double drift = 0.0;  ///< phi: part of the drift that remains after a row, 0 to 0.98
+  double white = 0.0;  ///< psi: 0 without white noise, phi if all noise is white
 
   /// Correlation of one row with the next.
   double from_row_to_row() const {
@@ -33,10 +33,10 @@ struct NoiseColour {
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, const std::vector<RowRun>& runs) const;
 };
 
-/// What the noise may be.
+/// The candidate colours of the noise.
 enum class NoiseKind { drift, drift_and_white };
 
-/// That of the least innovations, by squares with these weights of the rows.
+/// The colour with the smallest innovations, by squares with these weights of the rows.
 NoiseColour colour_of(NoiseKind kind, const Eigen::VectorXd& noise, const Eigen::VectorXd& weights,
                       const std::vector<RowRun>& runs);
 

@@ -52,7 +52,7 @@ sim::DriveDescription without(const sim::DriveDescription& model, std::string_vi
   return part;
 }
 
-/// The model without what has no inverse: what is left tells the size of the rest.
+/// The model without the effects that have no inverse; the others show the size of the rest.
 sim::DriveDescription invertible(const sim::DriveDescription& model) {
   sim::DriveDescription part = model;
   part.effects.clear();

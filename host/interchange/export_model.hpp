@@ -1,4 +1,4 @@
-// Models for other programs, with what those cannot express and by how much that matters on a record.
+// Models for other programs, with the effects that these cannot express, and the resulting error on a record.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -32,14 +32,14 @@ struct Export {
   std::vector<NotExpressed> not_expressed;
 };
 
-/// `path` is the file to write; LinuxCNC gets further ones beside it. `record`, adapted to the model, tells what the
-/// things that are left out come to. Throws Failure(bad_input) where the record is too short for the filter.
+/// `path` is the file to write; LinuxCNC gets further ones beside it. `record`, adapted to the model, gives the error
+/// of leaving these effects out. Throws Failure(bad_input) if the record is too short for the filter.
 Export export_model(const sim::DriveDescription& model, ExportTarget target, const std::string& path,
                     const Record* record);
 
 nlohmann::json to_json(const Export& exported);
 
-/// The texts, with `notes` (lines without a comment sign) in front.
+/// The model as text in each format. `notes` are lines without a comment sign, which become comments at the start.
 std::string c_header(const PortableModel& model, const std::vector<std::string>& notes);
 std::string python_module(const PortableModel& model, const std::vector<std::string>& notes);
 std::string modelica_model(const PortableModel& model, const std::vector<std::string>& notes);
@@ -49,13 +49,13 @@ std::string hal_lines(const PortableModel& model, const std::string& component);
 std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 std::string urdf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 
-/// The model as MJCF and URDF have it: one viscous coefficient, one level.
+/// Friction as MJCF and URDF know it: one viscous coefficient and one level for both directions.
 struct SymmetricFriction {
   double viscous = 0.0, level = 0.0;
 };
 SymmetricFriction symmetric(const PortableModel& model);
 
-/// A name as C, Modelica, XML and HAL take it.
+/// A name that is valid in C, Modelica, XML and HAL.
 std::string identifier(std::string_view name);
 
 }  // namespace host

@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// How a language writes the parts.
+/// Syntax of a language for the parts.
 struct Language {
   std::string_view exp, pow, sin, cos;
 };

@@ -37,11 +37,11 @@ struct PortableModel {
   /// Friction at a speed, signed like it; 0 at rest.
   double friction_at(double speed) const;
   double slope_at(double speed) const;
-  /// What acts on the motor beside friction, at a travel in mm or m.
+  /// Torque or force on the motor other than friction, at a travel in mm or m.
   double load_at(double x) const;
 };
 
-/// What every program with formulas can express.
+/// The part that every program with formulas can express.
 const std::set<std::string>& portable_kinds();
 
 PortableModel portable(const sim::DriveDescription& model);

@@ -24,8 +24,8 @@ std::string control_range(const sim::DataSheet& data, double gear) {
   return fmt::format(" ctrllimited=\"true\" ctrlrange=\"{:.17g} {:.17g}\"", -most, most);
 }
 
-/// MuJoCo turns its dry friction about at a speed of acceleration times a time constant: 20 ms as a rule, which is as
-/// short as two steps may make it (its manual, "Solver parameters").
+/// MuJoCo reverses its dry friction within a speed of acceleration times a time constant: 20 ms by default; the minimum
+/// is two steps (its manual, "Solver parameters").
 std::string sharp_friction(double step_s) {
   return fmt::format(" solreffriction=\"{:.17g} 1\" solimpfriction=\"0.99 0.99 0.001\"", 2.0 * step_s);
 }
@@ -40,7 +40,7 @@ SymmetricFriction symmetric(const PortableModel& model) {
 std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes) {
   const SymmetricFriction friction = symmetric(model);
   const std::string name = identifier(model.name);
-  // A coordinate of rad or m; what the model says per mm is per rad times the lead.
+  // Coordinates are rad or m; the model's values per mm are multiplied by the lead to be per rad.
   const double lead = model.rotary() ? model.data.lead : 1.0;
   std::string spring;
   if (model.stiffness != 0.0)

@@ -82,7 +82,7 @@ bool is_socket(const std::string& path) {
   return ::lstat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode);
 }
 
-/// What a board that has gone left behind may be removed; nothing else may.
+/// Only a socket that an ended board has left may be removed.
 void require_no_other_file(const std::string& path) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) return;

@@ -19,8 +19,9 @@ struct UsbBoard {
 /// Boards that are plugged in, whether or not this user may open them.
 std::vector<UsbBoard> find_usb_boards(const HidLibrary& library = hid_library());
 
-/// Opens the board with this serial number, or the only one when it is empty. Throws Failure: no_such_device (none, not
-/// this one, or several to choose from), permission (the message has the udev rule and how to install it).
+/// Opens the board with this serial number; if the number is empty, the only board. Throws Failure: no_such_device (no
+/// board, none with this number, or several to choose from), permission (the message has the udev rule and how to
+/// install it).
 std::unique_ptr<ReportLink> open_usb_board(const std::string& serial_number, const HidLibrary& library = hid_library());
 
 }  // namespace host

@@ -11,18 +11,18 @@ namespace host {
 enum class Presence {
   required,
   optional,
-  of_volts,  ///< absent where the torque or force is known by the current alone
+  of_volts,  ///< absent if torque or force is given only for the current
   alternative_unit,
 };
 
 struct DataSheetField {
   std::string_view table;  ///< "" for [drive] itself, else the name of its sub-table
   std::string_view key;
-  std::optional<sim::DriveKind> only;  ///< the kind of drive that has it; empty: both
+  std::optional<sim::DriveKind> only;  ///< the only kind of drive that has it; empty: both
   double sim::DataSheet::*value;
   bool zero_allowed;  ///< all are physical quantities and never negative
   Presence presence;
-  std::string_view meaning;  ///< with where its value stands on paper
+  std::string_view meaning;  ///< with the place of its value in a manufacturer's data sheet
   double divisor = 1.0;      ///< from the key's unit to the data sheet's
 
   bool belongs_to(sim::DriveKind kind) const { return !only || *only == kind; }

@@ -15,7 +15,7 @@ std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both);
 /// A drive may have several effects of one kind: each has a period or a time of its own.
 bool may_repeat(const sim::EffectInfo& info);
 
-/// The standard deviations of a free curve's values stand under this key, as many as the values.
+/// Key of the standard deviations of a free curve's values, one per value.
 constexpr std::string_view curve_deviation_key(sim::DriveKind kind) {
   return kind == sim::DriveKind::rotary ? "sd_Nm" : "sd_N";
 }
@@ -26,7 +26,7 @@ std::vector<std::string_view> effect_kinds();
 /// Throws Failure(usage), naming the closest kind, if the catalogue has none of this name.
 const sim::EffectInfo& known_effect(std::string_view kind);
 
-/// Whether an interval is one of this value: it holds it, to the rounding of its ends.
+/// Whether an interval belongs to this value, that is, contains it up to the rounding of its ends.
 bool holds(const std::array<double, 2>& interval, double value);
 
 }  // namespace host

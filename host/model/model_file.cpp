@@ -29,7 +29,7 @@ constexpr std::string_view kFormat = "axis-model/1";
 constexpr std::string_view kIntervalSuffix = "_ci95";
 constexpr std::string_view kHeldSuffix = "_held";
 constexpr std::string_view kDeviationSuffix = "_sd";
-constexpr std::string_view kGivenSuffix = "_given";  ///< what was believed, where a fit has moved the value
+constexpr std::string_view kGivenSuffix = "_given";  ///< the prior's mean, if a fit has changed the value
 constexpr std::string_view kHarmonics = "harmonics";
 constexpr std::string_view kForcePerVolt = "force_constant_N_per_V", kForcePerAmpere = "force_constant_N_per_A";
 
@@ -118,7 +118,7 @@ class ModelReader {
            unit);
   }
 
-  /// All that is missing at once. A kind that is not told is presumed from the fields that are there.
+  /// Names all missing fields at once. If the kind is missing, it is inferred from the present fields.
   void require_fields(const toml::table& drive) const {
     std::vector<std::string> missing;
     const bool speaks_of_force = drive.contains(kForcePerVolt) || drive.contains(kForcePerAmpere);
@@ -139,7 +139,7 @@ class ModelReader {
          fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them");
   }
 
-  /// The torque or force is known by the current: a volt stands for an ampere, and nothing limits it.
+  /// Torque or force is known only for the current, so a volt stands for an ampere, without a limit.
   void take_current_alone(const toml::table& drive) {
     if (const toml::node* dac = drive.get("dac"))
       fail(line_of(*dac),
@@ -242,7 +242,7 @@ class ModelReader {
     model_.effects.push_back(std::move(entry));
   }
 
-  /// What may stand beside each of these values.
+  /// Fields that may accompany each of these values.
   static std::vector<std::string> fields_beside(const Names& keys) {
     std::vector<std::string> fields;
     for (const std::string_view key : keys)
@@ -314,7 +314,7 @@ class ModelReader {
     }
   }
 
-  /// The orders of a period, where they stand in a list instead of as one pair.
+  /// The orders of a period, if given as a list instead of as one pair.
   void read_harmonics(const toml::table& table, const sim::EffectInfo& info, sim::EffectEntry& entry) const {
     const toml::node* node = table.get(kHarmonics);
     if (node == nullptr) return;

@@ -8,11 +8,11 @@
 
 namespace host {
 
-/// Whether a reader refuses values outside their physical bounds, or leaves them to doubts_of().
+/// Whether a reader refuses values outside their physical bounds, or accepts them for doubts_of() to report.
 enum class Bounds { enforced, examined_later };
 
-/// Reads a model. Throws Failure(bad_input) naming file, line, field and remedy; unknown fields are errors too, and an
-/// interval that does not hold its value.
+/// Reads a model. Throws Failure(bad_input) naming file, line, field and remedy; an unknown field is an error too, and
+/// so is an interval that does not contain its value.
 sim::DriveDescription read_model(const std::string& path, Bounds bounds = Bounds::enforced);
 
 /// Reads the data sheet of a drive: a model file whose effects may be absent.

@@ -1,4 +1,4 @@
-// Data sheets to be filled in: every field with its unit, and where its value stands on paper.
+// Data sheets to be filled in: every field with its unit, and the place of its value in a manufacturer's data sheet.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ struct SheetValues {
   std::optional<double> sample_period_s{};
 };
 
-/// A commented axis-model/1 file that holds what is known; what is not, and is needed, stands there as a comment that
-/// says what belongs there.
+/// A commented axis-model/1 file with the known values; each needed value that is not known is a comment that describes
+/// it.
 std::string sheet_text(const SheetValues& values);
 
 /// The keys that are needed and not yet known.

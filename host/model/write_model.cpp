@@ -47,7 +47,7 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
     fmt::format_to(out, "\n[drive.tach]\n{} = {}\n", tach_noise_key(data.kind), number(*data.tach_noise_variance));
 }
 
-/// A parameter's value, and what stands beside it: "J_kg_m2 = 0.1", "J_kg_m2_ci95 = [0.09, 0.11]", …
+/// A parameter's value and the fields that accompany it: "J_kg_m2 = 0.1", "J_kg_m2_ci95 = [0.09, 0.11]", …
 std::vector<std::string> fields_of(const sim::EffectEntry& entry, const std::string& id, std::string_view key) {
   std::vector<std::string> fields = {fmt::format("{} = {}", key, number(entry.at(id)))};
   // An interval that does not hold the value belongs to an earlier fit.

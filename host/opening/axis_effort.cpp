@@ -1,4 +1,5 @@
-// Of one axis of a log: the channel of torque or current, and what it tells of the drive beside the motion.
+// The channel of torque or current of one axis of a log, and the properties of the drive that it shows together with
+// the motion.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -16,8 +16,8 @@ namespace {
 /// Least correlation of a matching pair of position and speed.
 constexpr double kPair = 0.95;
 
-/// The relative error of a scale found from set points: at best, and as six made machines with a loop of PI control
-/// show it (2.3e-3 at most, but for single sweeps).
+/// The relative error of a scale found from set points: the smallest, and that of six simulated machines with PI
+/// control (at most 2.3e-3, except for single sweeps).
 constexpr double kScaleTolerance = 3e-4, kFollowingError = 4e-3;
 
 bool is_angular(const ChannelName& name) { return name.unit && name.unit->dimension == Dimension::angular_speed; }
@@ -235,7 +235,7 @@ void AxisStudy::settle_position() {
   take(*position_, *decision);
 }
 
-/// The table by a sensor of its own: no record needs one, so that what is in doubt is left out without a question.
+/// The table's own sensor: no record needs one, so an uncertain one is left out without a question.
 void AxisStudy::settle_table_position() {
   if (!position_taken_) return;
   const NamedChannel* table = nullptr;

@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// How sure a channel is: named with a unit, found by the motion's physics, or assumed.
+/// Confidence of a channel: named with a unit, found by the motion's physics, or assumed.
 inline constexpr double kSureByUnit = 0.97, kSureByPhysics = 0.93, kAssumed = 0.6;
 
 /// A column of the log with the meaning of its name.
@@ -24,8 +24,8 @@ class AxisStudy {
   AxisStudy(const std::vector<const Log*>& group, const Log& log, const OpeningHints& hints, double period_s)
       : group_(group), log_(log), hints_(hints), period_s_(period_s) {}
 
-  /// Decides about `channels`, which belong to one axis, and writes what it found into `found` and `channels_out`
-  /// (one entry for each column of the log).
+  /// Decides on the meaning of `channels`, which belong to one axis, and writes the result into `found` and
+  /// `channels_out` (one entry for each column of the log).
   void run(std::vector<NamedChannel> channels, OpenedAxis& axis, Understanding& found);
 
  private:
@@ -71,7 +71,7 @@ class AxisStudy {
   std::vector<bool> settled_;
   OpenedAxis* axis_ = nullptr;
   Understanding* found_ = nullptr;
-  bool may_slide_ = false;  ///< of a joint: taken as turning, with a question
+  bool may_slide_ = false;  ///< of a joint: assumed to turn, with a question to the user
   const NamedChannel *position_ = nullptr, *speed_ = nullptr, *effort_ = nullptr;
   std::optional<Decision> position_taken_;
 };

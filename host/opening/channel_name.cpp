@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// What a word says. Bits: a compound word ("drehzahlsollwert") says several things.
+/// Meanings of a word, as bits: a compound word ("drehzahlsollwert") has several.
 enum Sense : unsigned {
   kTime = 1U << 0U,
   kPosition = 1U << 1U,
@@ -22,7 +22,7 @@ enum Sense : unsigned {
   kForce = 1U << 5U,
   kVoltage = 1U << 6U,
   kTemperature = 1U << 7U,
-  kOther = 1U << 8U,  ///< acceleration, errors, status: nothing that a record takes
+  kOther = 1U << 8U,  ///< acceleration, errors, status: not used in a record
   kReference = 1U << 9U,
   kMeasured = 1U << 10U,
   kSecond = 1U << 11U,
@@ -269,7 +269,7 @@ bool is_axis_letter(std::string_view word) {
   return word.size() == 1 && std::string_view("xyzabcsuvw").find(word.front()) != std::string_view::npos;
 }
 
-/// Adds up what the words say. A letter or number that is no quantity of its own names the axis.
+/// Combines the meanings of the words. A letter or number that is not itself a quantity names the axis.
 Words read_words(std::string_view name) {
   const std::vector<std::string> words = words_of(name);
   Words read;

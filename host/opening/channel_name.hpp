@@ -21,26 +21,25 @@ enum class Quantity {
   force,
   voltage,
   temperature,
-  other,  ///< understood, and of no use here: acceleration, error, status, supply voltage
+  other,  ///< understood, but not used here: acceleration, error, status, supply voltage
 };
 
 struct ChannelName {
   Quantity quantity = Quantity::unknown;
-  bool is_reference = false;        ///< wanted: set point, command, target
-  bool is_measured = false;         ///< said to be measured: actual, feedback
+  bool is_reference = false;        ///< reference: set point, command, target
+  bool is_measured = false;         ///< named as measured: actual, feedback
   bool is_second = false;           ///< of the load side: a scale on the table
   bool is_weak = false;             ///< one letter, or a word that may mean something else ("enc", "u", "q")
   bool makes_torque = false;        ///< q current, torque-making
-  std::string axis;                 ///< "X1", "2"; empty: not in the name
+  std::string axis;                 ///< "X1", "2"; empty: the name has none
   std::string unit_text;            ///< as the log gives it
   std::optional<UnitMeaning> unit;  ///< empty: none, or unknown
-  /// Of a joint that turns or slides, which the log leaves open: the unit if it slides, where `unit` is the one if it
-  /// turns.
+  /// For a joint of which the log does not say whether it turns or slides: the unit if it slides (`unit`: if it turns).
   std::optional<UnitMeaning> sliding_unit{};
 };
 
-/// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own names.
-/// The unit comes from the column's own, from brackets, or from the end of the name.
+/// Recognises words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own
+/// names. The unit comes from the column's own, from brackets, or from the end of the name.
 ChannelName understand_name(const LogColumn& column);
 
 /// "position", "speed", …

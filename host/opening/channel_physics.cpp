@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// At most so many equations: enough for four digits of a factor, whatever the log's length.
+/// Limit of the number of equations: enough for four digits of a factor, whatever the log's length.
 constexpr std::size_t kMostRows = 20'000;
 
 struct Fit {
@@ -19,7 +19,7 @@ struct Fit {
   double r_squared = 0.0;
 };
 
-/// Least squares of y on the columns of `x` and a constant. Empty where the columns do not tell apart.
+/// Least squares of y on the columns of `x` and a constant. Empty if the columns are not independent.
 std::optional<Fit> fit(Eigen::MatrixXd x, const Eigen::VectorXd& y) {
   const Eigen::Index rows = x.rows(), columns = x.cols();
   if (rows < columns + 10) return std::nullopt;
@@ -58,7 +58,7 @@ std::vector<double> running_mean(const std::vector<double>& values, std::size_t 
   return means;
 }
 
-/// Every n-th row, so that no more than kMostRows are left.
+/// Every n-th row, so that at most kMostRows remain.
 std::size_t stride_of(std::size_t rows) { return std::max<std::size_t>(1, rows / kMostRows); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Physical relations between channels, to test what their names say.
+// Physical relations between channels, to test the meaning of their names.
 #pragma once
 
 #include <optional>
@@ -33,11 +33,11 @@ std::optional<double> wrap_range(const std::vector<double>& position);
 /// Whether all values are whole numbers over more than a few: counts, if it is a position.
 bool are_whole(const std::vector<double>& values);
 
-/// Numbers of a sign and a magnitude that were read as one whole number: the bit (15: 32968 is -200). Empty where there
-/// is no sign of it.
+/// For numbers in sign-magnitude form that were read as unsigned: the sign bit (15: 32968 is -200). Empty without
+/// evidence of that form.
 std::optional<int> sign_bit(const std::vector<double>& values);
 
-/// The values that `bit` gives.
+/// The values with `bit` as the sign bit.
 std::vector<double> without_sign_bit(std::vector<double> values, int bit);
 
 /// Whether all finite values are the same.

@@ -39,7 +39,7 @@ std::optional<double> noise_at_rest(const std::vector<double>& position, const s
   return std::sqrt(squares / 6.0 / static_cast<double>(count));
 }
 
-/// y by some columns and an offset: the factors, and the share of the squares of y that is left.
+/// Regression of y on some columns and an offset: the factors, and the remaining share of the squares of y.
 struct Regression {
   VectorXd factors;
   double left = 1.0;
@@ -54,9 +54,10 @@ Regression regress(const VectorXd& y, const std::vector<const VectorXd*>& by) {
   return {factors, (centred - columns * factors).squaredNorm() / all};
 }
 
-/// A relation holds where it leaves less than this of the squares: a tenth of the signal.
+/// A relation is accepted if it leaves less than this share of the squares: a tenth of the signal.
 constexpr double kHolds = 0.01;
-/// A second cause is there where it takes at least three quarters of what the first leaves: half of the error.
+/// A second cause is accepted if it removes at least three quarters of the squares that the first leaves: half of the
+/// error.
 constexpr double kNeeded = 0.25;
 
 /// Whether the current follows this voltage.

@@ -1,4 +1,4 @@
-// What a log alone tells of a drive's data sheet: the encoder's step, the current's noise, the amplifier, the winding.
+// Data-sheet values that a log alone shows: the encoder's step, the current's noise, the amplifier's gain, the winding.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Channels of one axis in the units of a record, one element a sample; empty where the log has none.
+/// Channels of one axis in the units of a record, one element per sample; empty if the log has none.
 struct LoggedMotion {
   std::vector<double> position;  ///< mm
   std::vector<double> speed;     ///< of the motor, rad/s, or m/s of a linear one
@@ -27,11 +27,11 @@ struct DriveConstants {
   bool is_linear = false;
 };
 
-/// What of it the channels show; a value that others would explain as well is left out. Of several
-/// voltages, the first that the current follows.
+/// The values that the channels show; ambiguous ones are left out. Of several voltages, uses the first that the current
+/// follows.
 DriveConstants constants_of(const LoggedMotion& logged);
 
-/// In one line; empty where nothing was found.
+/// As one line of text; empty if nothing was found.
 std::string constants_words(const DriveConstants& constants);
 
 }  // namespace host

@@ -39,7 +39,7 @@ constexpr NamedScale kLinearSpeeds[] = {{1.0, "mm/s"},         {1e3, "m/s"},    
 constexpr NamedScale kAngles[] = {{1.0, "rad"}, {2.0 * kPi, "turns"}, {kPi / 180.0, "deg"}, {1e-3, "mrad"}};
 constexpr NamedScale kLengths[] = {{1.0, "mm"}, {1e3, "m"}, {25.4, "inch"}, {1e-3, "um"}};
 
-/// Units differ by far more than a speed filter or a poor fit does.
+/// Units differ by much more than the error of a speed filter or a poor fit.
 constexpr double kUnitTolerance = 0.02;
 
 std::optional<NeatScale> nearest(std::span<const NamedScale> scales, double measured) {
@@ -54,7 +54,7 @@ std::optional<NeatScale> nearest(std::span<const NamedScale> scales, double meas
 std::optional<NeatScale> neat_counts_per_mm(double measured, double tolerance) {
   struct Ratio {
     double value = 0.0, counts = 0.0, screw = 0.0;
-    int ways = 0;  ///< in which usual encoders and screws make it
+    int ways = 0;  ///< number of combinations of usual encoders and screws that give it
   };
   constexpr double kUsualScrew = 10.0;
   std::vector<Ratio> ratios;

@@ -11,14 +11,14 @@ struct NeatScale {
   std::string words;
 };
 
-/// The counts a millimetre of a usual encoder (lines a turn times four, 2^n) on a usual screw within `tolerance` of
-/// what was measured; empty where there is none.
+/// Counts per millimetre of a usual encoder (lines per turn times four, 2^n) on a usual screw, within `tolerance` of
+/// the measured value; empty if there is none.
 std::optional<NeatScale> neat_counts_per_mm(double measured, double tolerance);
 
-/// The same for counts a radian: a usual encoder alone.
+/// The same for counts per radian: a usual encoder alone.
 std::optional<NeatScale> neat_counts_per_rad(double measured, double tolerance);
 
-/// A factor to rad/s within 2 % of that of a usual unit of speed ("1/min", 0.10472).
+/// The usual unit of speed whose factor to rad/s is within 2 % of the measured one ("1/min", 0.10472).
 std::optional<NeatScale> neat_angular_speed(double measured);
 
 /// The same to mm/s.

@@ -46,7 +46,7 @@ class HalReader {
 
   std::map<std::size_t, Sampler> samplers;
 
-  /// Of the thread that runs the sampler, s.
+  /// Period of the thread that runs the sampler, s.
   std::optional<double> period_s() const {
     for (const auto& [key, value] : settings_)
       if (key.starts_with("name") && value == thread_)

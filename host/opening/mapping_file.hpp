@@ -1,4 +1,4 @@
-// An accepted mapping as a file (`axis-mapping/1`, TOML): the next log of that machine needs no questions.
+// An accepted mapping as a file (`axis-mapping/1`, TOML), so that the next log of that machine needs no questions.
 #pragma once
 
 #include <optional>

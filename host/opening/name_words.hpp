@@ -1,4 +1,5 @@
-// A name in words: small letters, cut at signs, at changes from small to large letters, and between letters and digits.
+// Splits a name into words in small letters: at signs, at changes from small to large letters, and between letters and
+// digits.
 #pragma once
 
 #include <string>

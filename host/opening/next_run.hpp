@@ -1,4 +1,4 @@
-// What to record next, in the terms of the controller that wrote the log.
+// Recommends the next recording, in the terms of the controller that wrote the log.
 #pragma once
 
 #include <string>

@@ -143,7 +143,7 @@ class RecordMaker {
     return all;
   }
 
-  /// Stamps of their own that are the log's own all the same.
+  /// Separate stamps that equal the log's stamps.
   void share_stamps(const Log& log, std::vector<Mapping>& mappings) const {
     if (mappings.front().source == kRowSource) return;
     const std::vector<double>& stamps = log.find(mappings.front().source).values;
@@ -319,7 +319,7 @@ Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& o
 
 namespace {
 
-/// Of each axis that makes a record, what its log tells of the data sheet.
+/// Data-sheet values from the log, for each axis that gives a record.
 nlohmann::json constants_json(const Understanding& understood) {
   nlohmann::json all = nlohmann::json::array();
   for (const OpenedAxis& axis : understood.axes) {

@@ -16,10 +16,10 @@ struct OpeningOptions {
   std::string mapping_path{};  ///< an accepted mapping (axis-mapping/1); empty: none
 };
 
-/// `map`: an accepted mapping's file, or what --map takes: `x_mm=pos*0.001,…`. Throws Failure(usage).
+/// `map`: the file of an accepted mapping, or an argument of --map: `x_mm=pos*0.001,…`. Throws Failure(usage).
 void take_map(OpeningOptions& options, const std::string& map);
 
-/// The name of a file of one axis, "model-x.toml"; no sign of the axis' name leads into another folder.
+/// The name of a file of one axis, "model-x.toml"; characters of the axis' name cannot lead to another folder.
 std::string name_for_axis(std::string_view stem, std::string_view axis, std::string_view ending);
 
 struct OpenedRecord {
@@ -31,13 +31,13 @@ struct OpenedRecord {
 struct OpenedFile {
   std::string path;
   Understanding understood;
-  std::vector<OpenedRecord> records;  ///< that can be made of it once its questions are answered
+  std::vector<OpenedRecord> records;  ///< that can be made of it once all questions are answered
 };
 
 struct Opening {
   std::vector<OpenedFile> files;
 
-  /// Of all files, each once.
+  /// For all files, each once.
   std::vector<std::string> asks() const;
   std::vector<const OpenedRecord*> records() const;
 };
@@ -45,7 +45,7 @@ struct Opening {
 /// Reads and understands. Throws Failure(bad_input) where a file cannot be read at all.
 Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options);
 
-/// Writes the records and the accepted mapping (mapping.toml) into a folder, which is made where it is missing; the
+/// Writes the records and the accepted mapping (mapping.toml) into a folder, which is made if missing; returns the
 /// records' files. Throws Failure as write_record() does.
 std::vector<std::string> write_opening(const Opening& opening, const std::string& folder);
 

@@ -76,8 +76,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// A period that was measured, as its maker set it: the nearest number of three digits, or of the steps 1/3 and 2/3 us,
-/// where it differs by less than quartz clocks do.
+/// The nominal value of a measured period: the nearest number of three digits, or with steps of 1/3 and 2/3 us, if the
+/// difference is within the error of quartz clocks.
 double as_set(double period_s) {
   constexpr double kClocks = 2e-4;
   const double unit = std::pow(10.0, std::floor(std::log10(period_s)) - 2.0);
@@ -114,7 +114,8 @@ std::vector<double> known(const std::vector<double>& values) {
   return result;
 }
 
-/// Seconds of a stamp's unit that the log does not tell: the one unit under which the rate is one of a drive's log.
+/// Unit of stamps, in s, if the log does not state it: the only unit with which the rate is plausible for a drive's
+/// log.
 struct Guess {
   double factor = 0.0, sure = 0.0;
   std::string why;
@@ -151,7 +152,7 @@ TimeBase by_rows(double period_s, std::string why, double sure) {
   return base;
 }
 
-/// Whether stamps stay within a third of a period of an even line through them: no sample was lost.
+/// Whether stamps stay within a third of a period of a straight line, so that no sample was lost.
 bool follows_even_line(const std::vector<double>& stamps, double period) {
   constexpr double kShare = 0.33;
   for (std::size_t k = 0; k < stamps.size(); ++k)

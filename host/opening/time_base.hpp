@@ -17,21 +17,21 @@ struct StatedPeriod {
   std::string line;            ///< where it stands
 };
 
-/// "Abtastung: 1 ms", "Sampling time interval(ms),0.667", "# Sampling period is 1000000 ns", "Rate: 2 kHz"; empty where
-/// the text states none, or several that differ.
+/// "Abtastung: 1 ms", "Sampling time interval(ms),0.667", "# Sampling period is 1000000 ns", "Rate: 2 kHz"; empty if
+/// the text states none, or different ones.
 std::optional<StatedPeriod> stated_period(const Log& log);
 
 struct TimeBase {
   std::string source;                   ///< column of the stamps, or "row"; empty: not found
   double factor = 1.0;                  ///< to seconds
   double period_s = 0.0;                ///< of the rows; 0: not found
-  std::optional<double> resample_s;     ///< the rows are uneven: make even ones of this period
-  std::vector<std::size_t> run_starts;  ///< rows at which stamps begin again: several runs strung together
+  std::optional<double> resample_s;     ///< the rows are uneven and must be resampled with this period
+  std::vector<std::size_t> run_starts;  ///< rows at which stamps begin again: several runs one after the other
   std::string why;
   double sure = 0.0;
 };
 
-/// The time base of the rows of `stamps`, one of the log's columns; nullptr: of a log without stamps.
+/// The time base from `stamps`, one of the log's columns; nullptr for a log without stamps.
 TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName* name,
                       std::optional<double> given_period_s);
 

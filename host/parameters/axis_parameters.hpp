@@ -1,4 +1,4 @@
-// A design in the form that the control core takes.
+// Converts a design to the parameters of the control core.
 #pragma once
 
 #include "firmware/core/axis_parameters.hpp"
@@ -13,7 +13,7 @@ namespace host {
 firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                 double tachometer_resolution, const ReferenceLimits& limits = {});
 
-/// The same as a board runs them after `design` and `set-params`: with the switches as board_parameters() has them.
+/// The same as on a board after `design` and `set-params`: with the switches of board_parameters().
 firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                     const ControlFilterChoice& filters = {});
 

@@ -38,7 +38,7 @@ std::optional<std::array<std::int32_t, 4>> four_whole(std::string_view text) {
   return trim_blanks(text).empty() ? std::optional(all) : std::nullopt;
 }
 
-/// Programs whose backups had no CRC knew boards of two axes.
+/// Programs whose backups had no CRC supported only boards with two axes.
 constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
 
 /// Normalises line ends first: an editor or a mail that writes CR LF has not changed a value.
@@ -68,7 +68,7 @@ std::string parameter_lines(const firmware::ParameterValues& values) {
   return text;
 }
 
-/// What the file claims of the text below its CRC.
+/// The file's statements about the text below its CRC.
 struct Seal {
   unsigned long count = 0;
   std::uint32_t crc = 0;

@@ -18,12 +18,12 @@ using PitchTables = std::vector<std::vector<firmware::PitchPoint>>;  ///< an axi
 std::string format_backup(const firmware::ParameterValues& values,
                           const std::vector<firmware::StoredEntry>& foreign = {}, const PitchTables& pitch = {});
 
-/// Reads a backup. Throws Failure(bad_input) where count or CRC tell that it was cut or changed; where it has neither,
-/// as those of older programs, unless it names every parameter to its last line's end.
+/// Reads a backup. Throws Failure(bad_input) if count or CRC show that it was cut or changed. A backup of older
+/// programs has neither; it must name every parameter and end with a complete line.
 std::vector<Assignment> parse_backup(std::string_view text, std::string_view name);
 
-/// The tables of a backup that parse_backup() takes, an axis each; none of programs that did not keep them. Throws
-/// Failure(bad_input) for a line that is no point, or points that no board takes.
+/// The tables of a backup that parse_backup() accepts, one per axis; empty for programs that did not save them. Throws
+/// Failure(bad_input) for a line that is not a point, or points that no board accepts.
 std::optional<PitchTables> pitch_of_backup(std::string_view text, std::string_view name, std::size_t axes);
 
 }  // namespace host

@@ -15,7 +15,7 @@ struct CompensationParameter {
 };
 
 /// Every switch, on where the model has the effect, and the values of those that are on; the tachometer's calibration.
-/// Of several coggings the largest are taken, as many as the board has harmonics.
+/// Of several coggings, takes the largest, as many as the board has harmonics.
 std::vector<CompensationParameter> compensation_parameters(const sim::DriveDescription& model);
 
 /// TOML tables, one a group, with units and meaning as the model's kind of drive has them.
@@ -28,14 +28,14 @@ std::string compensation_toml(const sim::DriveDescription& model);
 /// feed-forward, and the tachometer's calibration is not part of it.
 firmware::CompensationParameters<float> core_compensation(const sim::DriveDescription& model);
 
-/// Its reading is gain * speed + offset, rad/s (m/s); 1 and 0 where the model says nothing.
+/// Its reading is gain * speed + offset, rad/s (m/s); 1 and 0 if the model has no such effect.
 struct TachometerReading {
   double gain = 1.0;
   double offset = 0.0;
 };
 TachometerReading tachometer_reading(const sim::DriveDescription& model);
 
-/// Effects of the model that neither feedback's design nor feed-forward on a board takes up, by kind; and that some
+/// Kinds of the model's effects that neither the feedback design nor the board's feed-forward includes; and a note if
 /// harmonics of cogging were left out.
 std::vector<std::string> uncompensated_effects(const sim::DriveDescription& model);
 

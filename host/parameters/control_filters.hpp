@@ -1,4 +1,4 @@
-// Notch and low-pass behind the feedback (firmware/core/control/control_filter.hpp), as a design chooses them.
+// Notch and low-pass after the feedback (firmware/core/control/control_filter.hpp), as chosen by a design.
 #pragma once
 
 #include <optional>

@@ -10,7 +10,7 @@ namespace {
 
 namespace ceilings = firmware::monitor_ceilings;
 
-/// The axis in figures, in double precision: what the relations are made of.
+/// Figures of the axis for the relations, in double precision.
 struct AxisFigures {
   double period_s, lead, fastest, count, full_change;
 

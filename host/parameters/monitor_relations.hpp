@@ -1,4 +1,4 @@
-// Which relation between a monitor's threshold and the axis does not hold, with its figures and what would fit.
+// The violated relation between a monitor's threshold and the axis, with its figures and values that would fit.
 #pragma once
 
 #include <string>

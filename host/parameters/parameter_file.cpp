@@ -31,7 +31,7 @@ bool is_board_group(std::string_view name) {
   });
 }
 
-/// What a backup says of itself (backup_file.hpp).
+/// The header of a backup (backup_file.hpp).
 bool is_seal(std::string_view key) { return key == "count" || key == "crc32"; }
 
 class ParameterReader {

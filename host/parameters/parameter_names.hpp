@@ -1,4 +1,4 @@
-// Parameters as people name them: "x.kalman.k11", "control.rate".
+// Names of parameters for users: "x.kalman.k11", "control.rate".
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ std::optional<std::size_t> place_named(std::string_view name);
 /// The same, but throws Failure(bad_input) with the nearest name; `where` begins the message ("file.toml:3: ").
 std::size_t require_place(std::string_view name, const std::string& where = "");
 
-/// Of a board with as many axes as the axis board.
+/// For a board with as many axes as the axis board.
 std::vector<std::string> all_parameter_names();
 
 /// "; did you mean x.kalman?": the nearest parameter, group ("x.kalman"), or either without its axis; "" where none is.

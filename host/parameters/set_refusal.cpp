@@ -43,7 +43,7 @@ const char* words(PoleProblem problem) {
   return "stable here, but not after the board's rounding";
 }
 
-/// As the monitor's declaration has it; empty where it has none.
+/// Text of the monitor's declaration; empty if it has none.
 std::string declared_reason(Refusal refusal) {
   std::string reason;
   firmware::MonitoredFaults::for_each([&](auto declared) {

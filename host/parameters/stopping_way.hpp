@@ -1,11 +1,11 @@
-// How far and how long an axis goes on after a stop has begun, by formula from its drive (README, "The board").
+// Distance and duration of a stop, by formula from the drive (README, "The board").
 #pragma once
 
 #include "sim/drive_description.hpp"
 
 namespace host {
 
-/// Of an axis: mm and rad, or m throughout for a linear drive.
+/// Figures of an axis: mm and rad, or only m for a linear drive.
 struct StoppingFigures {
   double inertia = 0.0;       ///< J, kg m^2 or kg, > 0
   double friction = 0.0;      ///< T, least Coulomb friction of both directions up to the top speed, Nm or N, >= 0

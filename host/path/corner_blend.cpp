@@ -7,7 +7,7 @@ namespace host {
 
 namespace {
 
-constexpr double kShortest_mm = 1e-3;  ///< what no encoder tells from a corner
+constexpr double kShortest_mm = 1e-3;  ///< shorter blends cannot be told from a corner by any encoder
 constexpr double kSharpest_rad = 2.9;  ///< beyond, the path turns back
 
 CornerBlend blend_of(const PathCurve& before, const PathCurve& after, double taken) {

@@ -1,4 +1,4 @@
-// Rounds the corners of a path, and eases its changes of curvature, within a tolerance.
+// Rounds the corners of a path, and smooths its changes of curvature, within a tolerance.
 #pragma once
 
 #include <optional>
@@ -7,20 +7,20 @@
 
 namespace host {
 
-/// A curve from the end of one piece into the beginning of the next, and the lengths that it replaces.
+/// A curve from the end of one piece to the beginning of the next, and the lengths that it replaces.
 struct CornerBlend {
   PathCurve curve;
-  double taken = 0.0;  ///< mm of either
+  double taken = 0.0;  ///< mm of each piece
 };
 
-/// No farther than `tolerance_mm` from both pieces, nor their corner from it, and no longer than `most_mm` of either.
-/// Nothing where the path turns back on itself, or the corner is too sharp for the tolerance.
+/// The blend and the pieces with their corner are at most `tolerance_mm` apart, and it replaces at most `most_mm` of
+/// each piece. Empty if the path reverses, or the corner is too sharp for the tolerance.
 std::optional<CornerBlend> blend_corner(const PathCurve& before, const PathCurve& after, double tolerance_mm,
                                         double most_mm);
 
 /// Whether tangent and curvature are continuous.
 bool is_smooth(const PathCurve& before, const PathCurve& after);
-/// Between the tangents, rad.
+/// Angle between the tangents, rad.
 double corner_angle(const PathCurve& before, const PathCurve& after);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// How long a planned path may be.
+// Limits of a planned path: number of nodes and duration.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The pieces that a path is made of: lines, arcs (with a rise: helices) and the blends between them.
+// The pieces of a path: lines, arcs (with a rise: helices) and the blends between them.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace host {
 /// Millimetres, x, y and z.
 using PathPoint = Eigen::Vector3d;
 
-/// Where a curve is at some length of it, and its derivatives by length: unit tangent, and curvature, 1/mm.
+/// Position at some length of a curve, and its derivatives by length: unit tangent, and curvature, 1/mm.
 struct CurveState {
   PathPoint point = PathPoint::Zero(), tangent = PathPoint::Zero(), curvature = PathPoint::Zero();
 };
@@ -20,8 +20,8 @@ class PathCurve {
   static PathCurve line(const PathPoint& begin, const PathPoint& end);
   /// About `centre` in the plane of x and y, by `angle`, rad, positive counter-clockwise; z rises evenly to end_z.
   static PathCurve arc(const PathPoint& begin, const PathPoint& centre, double angle, double end_z);
-  /// A polynomial of fifth degree that leaves `begin` and reaches `end` with their tangents and curvatures, as fast as
-  /// if it were `reach` long.
+  /// A polynomial of fifth degree from `begin` to `end` with their tangents and curvatures; its derivative at the ends
+  /// is that of a curve of length `reach`.
   static PathCurve blend(const CurveState& begin, const CurveState& end, double reach);
 
   double length() const { return length_; }
@@ -30,9 +30,9 @@ class PathCurve {
   CurveState at(double length) const;
   PathPoint begin() const { return at(0.0).point; }
   PathPoint end() const { return at(length_).point; }
-  /// The nearest distance of a point, >= 0; of a blend to within its 64th part.
+  /// The smallest distance to a point, >= 0; for a blend to within its 64th part.
   double distance_to(const PathPoint& point) const;
-  /// Total angle by which the tangent turns, rad.
+  /// Total rotation of the tangent, rad.
   double turning() const;
 
   /// The part between two lengths.

@@ -1,4 +1,4 @@
-// The box that a planned path fills, and whether it fits the machine.
+// The bounding box of a planned path, and a check that it fits the machine.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ struct PathExtents {
   PathPoint least, most;  ///< mm
 };
 
-/// Of the whole path, to within a thousandth of a millimetre; no coordinate is -0.
+/// Extents of the whole path, to within a thousandth of a millimetre; no coordinate is -0.
 PathExtents extents_of(const PlannedPath& path);
 
-/// Throws Failure(refused) "NAME:LINE: …" for the first place of the path that lies beyond a limit of one of its axes.
+/// Throws Failure(refused) "NAME:LINE: …" for the first point of the path beyond a limit of one of its axes.
 void require_inside(const PlannedPath& path, const PathExtents& limits, std::size_t axes, const std::string& name);
 
 }  // namespace host

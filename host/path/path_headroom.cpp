@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Until a clock that changes as quickly as it may does not change any more, s.
+/// Time until a clock that changes at its fastest is constant again, s.
 double longest_run_out_s(const AxisLimits& limits) {
   double change = std::numeric_limits<double>::infinity(), ramp = change;
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// How much faster each piece of a planned path could be followed, for the board's clock: PathClock.
+// Headroom of each piece of a planned path for the board's clock: how much faster it could be followed (PathClock).
 #pragma once
 
 #include "firmware/core/path/path_headroom.hpp"
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// Those that a path must hold at rate 1 so that it holds `limits` of acceleration and jerk at `rate`.
+/// The limits that a path must keep at rate 1 in order to keep the `limits` of acceleration and jerk at `rate`.
 AxisLimits limits_at_rate(const AxisLimits& limits, double rate);
 
 void find_headroom(std::vector<PathKnot>& knots, const PathPlanOptions& options);

@@ -17,21 +17,21 @@ namespace host {
 
 namespace {
 
-constexpr double kGoesOn_rad = 0.05;  ///< a corner so slight is eased within half a count rather than stopped at
+constexpr double kGoesOn_rad = 0.05;  ///< at a smaller corner the path does not stop, but rounds it within half a count
 constexpr double kSharp_rad =
     0.6;  ///< beyond, stopping on the one leg while starting on the other is quicker than a curve
-constexpr double kMargin = 1.0 + 1e-4;  ///< for what lies between the points that are checked
+constexpr double kMargin = 1.0 + 1e-4;  ///< for the motion between the checked points
 constexpr int kCheckedPoints = 16;      ///< of a polynomial
 
-/// Spans that begin before the one before them has ended, where the path may be left a little: each slows down and
-/// speeds up as its own limits have it, and while one stops the next one starts.
+/// Spans that begin before the previous one has ended, where a tolerance allows it: each slows down and speeds up
+/// within its own limits, and one starts while the other stops.
 class Chain {
  public:
   explicit Chain(const PathPlanOptions& options) : options_(options) {}
 
   bool is_empty() const { return spans_.empty(); }
 
-  /// `tolerance_mm`: of the corner at its begin, against the span before.
+  /// `tolerance_mm`: of the corner at its beginning, with the previous span.
   void add(PathSpan span, double tolerance_mm) {
     constexpr int kRounds = 4;
     for (int k = 0; k < kRounds && span.tighten(knots_of({span}, {0.0})); ++k) continue;
@@ -40,7 +40,7 @@ class Chain {
     if (!spans_.empty()) {
       begin_s = begins_.back() + spans_.back().duration_s();
       double early_s = overlap(spans_.back(), span, tolerance_mm);
-      // As the knots have it: rather begin a little later here than slow everything down.
+      // With the motion of the knots: rather begin slightly later here than slow down the whole path.
       constexpr int kTrials = 8;
       for (int k = 0; k < kTrials && early_s > 0.0; ++k, early_s *= 0.96)
         if (excess({spans_.back(), span}, {0.0, spans_.back().duration_s() - early_s}) < 1.0005) break;
@@ -52,7 +52,7 @@ class Chain {
 
   void add_to(PlannedPath& path) {
     if (spans_.empty()) return;
-    // Knots lie elsewhere afterwards, and what is between them differs a little: once more, or twice.
+    // Afterwards the knots and the motion between them are slightly different, so this is repeated once or twice.
     constexpr int kRounds = 4;
     for (int k = 0; k < kRounds; ++k) {
       const double more = excess(spans_, begins_);
@@ -77,7 +77,7 @@ class Chain {
   }
 
  private:
-  /// All of them at one time: each from its begin, as far as it has got.
+  /// State of all spans at one time, each from its own beginning.
   static PathKnot at(const std::vector<PathSpan>& spans, const std::vector<double>& begins, double time_s) {
     const auto next = std::ranges::upper_bound(begins, time_s);
     const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - begins.begin() - 1, 0));
@@ -116,7 +116,7 @@ class Chain {
     return knots;
   }
 
-  /// By which factor they must be slowed down to hold the limits: 1 where they do.
+  /// Factor by which they must be slowed down to keep the limits; 1 if they keep them.
   double excess(const std::vector<PathSpan>& spans, const std::vector<double>& begins) const {
     const std::vector<PathKnot> knots = knots_of(spans, begins);
     const LimitUse use = limit_use(knots.data(), knots.data() + knots.size(), options_.limits);
@@ -168,7 +168,7 @@ class Chain {
   std::vector<double> begins_;
 };
 
-/// Joins moves to spans: with blends where the path may be left a little, and stops where it may not.
+/// Joins moves to spans: with blends where there is a tolerance, otherwise with stops.
 class Joiner {
  public:
   Joiner(PlannedPath& path, const PathPlanOptions& options) : path_(path), options_(options) {}
@@ -222,14 +222,14 @@ class Joiner {
     taken_mm_ = blend->taken;
   }
 
-  /// Against a stop, which takes this time at least for the way that the blend replaces.
+  /// Compared with a stop, which needs at least this time for the length that the blend replaces.
   bool is_worthwhile(const CornerBlend& blend) const {
     const SpeedInterval passed =
         interval_of({blend.curve, std::numeric_limits<double>::infinity(), 0, 0.0}, options_.limits);
     return blend.curve.length() / passed.speed < 2.0 * std::cbrt(6.0 * blend.taken / options_.limits.jerk.minCoeff());
   }
 
-  /// Of the newest curve, what blends took at its begin, and take at its end.
+  /// Lengths of the newest curve that blends replace at its beginning and at its end.
   void cut_last(double end_mm) {
     const double to = whole_mm_ - end_mm;
     if (to - begin_mm_ <= whole_mm_ * 1e-9)
@@ -241,8 +241,8 @@ class Joiner {
 
   void dwell(const PathMove& move) {
     if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
-    constexpr double kLongestPiece_s = 0.05;  // within what a node can say at any rate
-    // A stop is a node of its own: a board that has no more stands there.
+    constexpr double kLongestPiece_s = 0.05;  // within the range of a node at any rate
+    // A stop is a separate node, so a board without further nodes stands there.
     const int least = move.kind == PathMoveKind::stop ? 1 : 0;
     const auto parts = std::max(least, static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s)));
     for (int k = 0; k < parts; ++k) {
@@ -258,10 +258,10 @@ class Joiner {
   Chain chain_{options_};
   std::vector<SpanCurve> span_;
   double entry_mm_ = 0.0;      ///< tolerance of the corner where the span began
-  double tolerance_mm_ = 0.0;  ///< of the corner that comes
+  double tolerance_mm_ = 0.0;  ///< of the next corner
   double whole_mm_ = 0.0;      ///< of the newest curve before it was cut
-  double begin_mm_ = 0.0;      ///< that the blend before it took
-  double taken_mm_ = 0.0;      ///< that the newest blend takes of the curve that comes
+  double begin_mm_ = 0.0;      ///< replaced by the blend before it
+  double taken_mm_ = 0.0;      ///< of the next curve, replaced by the newest blend
 };
 
 }  // namespace

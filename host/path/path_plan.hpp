@@ -1,4 +1,4 @@
-// A program's motion, planned: from moves and their feeds to nodes that a board follows.
+// Plans a program's motion: from moves and their feeds to nodes that a board follows.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Of each axis, mm and s.
+/// Limits of each axis, in mm and s.
 struct AxisLimits {
   PathPoint velocity, acceleration, jerk;
 };
@@ -24,24 +24,24 @@ struct PathMove {
   std::size_t line = 0;       ///< of the program
 };
 
-/// Of all axes at one time.
+/// State of all axes at one time.
 struct PathKnot {
   double time_s = 0.0;
   PathPoint position, velocity, acceleration;
-  /// The rates at which the limits of acceleration and jerk would be held: by the piece that ends here and what it
-  /// touches; by all that comes until a board's clock, which might change there, could be brought to what the least of
-  /// them allows.
+  /// The rates up to which the limits of acceleration and jerk would be kept: by the piece that ends here and its
+  /// neighbours; and by all pieces until a board's changing clock could have slowed down to the smallest of their
+  /// rates.
   double headroom_here = 1.0, headroom_ahead = 1.0;
 };
 
-/// A curve as it is followed.
+/// A curve with its time.
 struct PlannedCurve {
   PathCurve curve;
-  double time_s = 0.0;   ///< at its begin
+  double time_s = 0.0;   ///< at its beginning
   std::size_t line = 0;  ///< of the program
 };
 
-/// Where a program waits for its operator.
+/// A stop at which a program waits for its operator.
 struct PathStop {
   std::size_t knot = 0;  ///< at rest
   std::size_t line = 0;  ///< of the program
@@ -51,7 +51,7 @@ struct PlannedPath {
   std::vector<PathKnot> knots;  ///< from the first, at rest, to the last, at rest
   std::vector<PlannedCurve> curves;
   std::vector<PathStop> stops;
-  double stretched = 1.0;  ///< the largest factor by which a part was slowed down to hold the limits
+  double stretched = 1.0;  ///< the largest factor by which a part was slowed down to keep the limits
   double duration_s() const { return knots.empty() ? 0.0 : knots.back().time_s; }
 };
 
@@ -59,22 +59,21 @@ struct PathPlanOptions {
   AxisLimits limits;
   double count_mm = 0.001;              ///< the finest encoder step: half of it is the tolerance of an exact path
   double shortest_s = 0.002;            ///< between knots
-  double time_unit_s = 0.001 / 4096.0;  ///< in which a board has the time between them
+  double time_unit_s = 0.001 / 4096.0;  ///< unit of the time between knots on a board
 };
 
-/// Within the limits of each axis, as quickly as the planner can; those of acceleration and jerk so that they would be
-/// held at the rate firmware::kLeastHeadroom too, which a clock needs that must change. Corners are stopped at where
-/// their tolerance is 0 and they are no smooth going on. Throws Failure(bad_input) where a limit or a feed is not above
-/// 0.
+/// Plans the motion as fast as possible within the limits of each axis. The limits of acceleration and jerk are also
+/// kept at the rate firmware::kLeastHeadroom, because a changing clock needs this reserve. The path stops at corners
+/// with a tolerance of 0 unless they are smooth. Throws Failure(bad_input) if a limit or a feed is not above 0.
 PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions& options);
 
-/// Of what the knots' polynomials ask of the axes, the largest share of a limit: 1 at the limit.
+/// The largest share of a limit that the knots' polynomials need: 1 at the limit.
 struct LimitUse {
   double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
 };
 LimitUse limit_use(const PathKnot* begin, const PathKnot* end, const AxisLimits& limits);
 
-/// Between two knots, as the board has it.
+/// Motion between two knots, as on the board.
 PathKnot between(const PathKnot& a, const PathKnot& b, double time_s);
 
 }  // namespace host

@@ -11,11 +11,11 @@ namespace host {
 
 namespace {
 
-constexpr double kLongest_s = 0.02;    ///< between knots: a board's look ahead counts them
+constexpr double kLongest_s = 0.02;    ///< between knots: a board's look-ahead is a number of knots
 constexpr double kLargestTurn = 0.15;  ///< rad between knots: the polynomial is then within 1e-9 of the radius
 constexpr double kCellOfRamp = 0.125;  ///< of the time in which an axis reaches its acceleration: a cell of the warp
 
-/// What a curve asks of the axes for one of motion along it: first, second and third derivative by length, amounts.
+/// Motion of the axes per unit of motion along a curve: magnitudes of the first, second and third derivative by length.
 struct CurveDemand {
   PathPoint first, second, third;
 };
@@ -97,7 +97,8 @@ PathSpan::PathSpan(std::vector<SpanCurve> curves, const PathPlanOptions& options
     times_.push_back(times_.back() + phase.duration_s);
   }
   require_bounded(0, times_.back(), curves_.front().line);
-  // Where curves take part of the limits, the profile, which has one acceleration and jerk a phase, leaves the rest.
+  // Where curves need a part of the limits, the profile, with one acceleration and jerk per phase, does not use the
+  // rest.
   const bool is_straight = std::ranges::all_of(curves_, [](const SpanCurve& one) { return one.curve.is_line(); });
   if (is_straight) return;
   cells_ = warp_cells();

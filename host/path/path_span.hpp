@@ -16,11 +16,11 @@ struct SpanCurve {
   double begin = 0.0;  ///< along the span
 };
 
-/// Limits of a curve for the motion along it.
+/// Limits of the motion along a curve.
 SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits);
 
-/// First the profile, which has one acceleration and jerk a phase; where curves take part of the limits it leaves some
-/// of the rest, which a warp of its time then uses.
+/// First computes the profile, which has one acceleration and jerk per phase. Where curves need a part of the limits,
+/// the profile does not use all of the rest; a time warp then uses it.
 class PathSpan {
  public:
   PathSpan(std::vector<SpanCurve> curves, const PathPlanOptions& options);
@@ -33,11 +33,11 @@ class PathSpan {
   double last_begins_s() const { return begins_s(curves_.back()); }
   double begins_s(const SpanCurve& one) const { return factor_ * warp_.warped(time_at(one.begin)); }
 
-  /// Where the polynomials between the knots exceed a limit: less of it there for the warp, which is made anew. False
-  /// where they do not, or there is none.
+  /// Where the polynomials between the knots exceed a limit, gives the warp a smaller share of it and computes the warp
+  /// again. False if no limit is exceeded, or if there is no warp.
   bool tighten(const std::vector<PathKnot>& knots);
 
-  /// Slows the whole way down by a factor.
+  /// Slows the whole span down by a factor.
   void stretch(double factor) { factor_ *= factor; }
   double stretched() const { return factor_; }
 
@@ -48,7 +48,7 @@ class PathSpan {
     double time_s;
     int weight;
   };
-  /// Where the jerk changes, where curves meet, and in between as often as the curve needs; not at the ends.
+  /// Knots where the jerk changes, where curves meet, and in between as often as the curve requires; not at the ends.
   std::vector<Wanted> knot_times() const;
 
  private:
@@ -66,7 +66,7 @@ class PathSpan {
   std::vector<SpeedPhase> phases_;
   std::vector<SpeedState> states_;
   std::vector<double> times_;
-  std::vector<double> cells_, shares_;  ///< of the warp, and what it may take of the limits there
+  std::vector<double> cells_, shares_;  ///< of the warp, and its allowed shares of the limits
   TimeWarp warp_;
   double factor_ = 1.0;
 };

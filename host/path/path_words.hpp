@@ -1,4 +1,4 @@
-// A planned path in the words that a board takes: firmware/core/path/path_node.hpp.
+// Converts a planned path to the words of a board: firmware/core/path/path_node.hpp.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct PathScale {
   double rate_Hz = 1000.0;
 };
 
-/// Where a board's references stand: the path begins there.
+/// Present references of a board, where the path begins.
 struct BoardPosition {
   std::int64_t counts = 0;
   double fraction = 0.0;  ///< of a count
@@ -27,7 +27,7 @@ struct PathWord {
   std::uint8_t headroom_here = 0, headroom_ahead = 0;  ///< numbers of firmware::kHeadrooms
   std::vector<firmware::PathAxisNode> axis;            ///< in the order of PathScale::axes
 
-  /// As firmware::PathNode::set_time() takes it.
+  /// Word for firmware::PathNode::set_time().
   std::uint32_t time() const {
     return duration | std::uint32_t{headroom_here} << firmware::kHeadroomHereShift |
            std::uint32_t{headroom_ahead} << firmware::kHeadroomAheadShift;
@@ -39,12 +39,12 @@ struct PathWords {
   std::vector<PathWord> nodes;
 };
 
-/// In the finest units that hold the path.
+/// In the finest units with which the path fits.
 firmware::PathUnits units_of(const PlannedPath& path, const PathScale& scale);
 
-/// Errors of rounding do not add up: each node lies where the plan has it, to within its unit. Throws
-/// Failure(bad_input) where the path begins elsewhere than the board stands, by more than a count, or is faster than
-/// words can say.
+/// Rounding errors do not accumulate: each node is within one unit of the plan. Throws Failure(bad_input) if the
+/// beginning of the path differs from the board's reference by more than a count, or if the path is too fast for the
+/// words.
 PathWords path_words(const PlannedPath& path, const PathScale& scale, const firmware::PathUnits& units,
                      const std::vector<BoardPosition>& start);
 

@@ -35,7 +35,7 @@ void add_ramp(std::vector<SpeedPhase>& phases, double from, double to, const Tan
   add_phase(phases, jerk_time, -jerk);
 }
 
-/// Up from one speed, on, and down to another, over some length.
+/// A hump: up from one speed, cruise, and down to another, over some length.
 struct Hump {
   double from = 0.0, top = 0.0, to = 0.0, length = 0.0;
   TangentialLimits rising, falling;
@@ -73,8 +73,7 @@ class Profile {
   }
   static bool are_usable(const TangentialLimits& l) { return l.acceleration > 0.0 && l.jerk > 0.0; }
 
-  /// Of the intervals that the ramps of a hump with this top cover, and of no others. Nothing where a ramp is
-  /// impossible.
+  /// Limits of only those intervals that the ramps of a hump with this top cover. Empty if a ramp is impossible.
   static std::optional<Hump> hump_to(double top, std::span<const SpeedInterval> region, double begin, double from,
                                      double end, double to) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -95,8 +94,7 @@ class Profile {
     return hump;
   }
 
-  /// As high as `most` and the length allow; nothing where the length does not suffice to get from one speed to the
-  /// other.
+  /// The highest hump within `most` and the length; empty if the length does not suffice for the change of speed.
   static std::optional<Hump> hump(std::span<const SpeedInterval> region, double begin, double from, double end,
                                   double to, double most) {
     auto found = hump_to(most, region, begin, from, end, to);
@@ -114,7 +112,7 @@ class Profile {
     return found;
   }
 
-  /// The quickest of several tops: a curve that is taken faster leaves less acceleration for getting there.
+  /// The fastest of several tops, because a higher speed on a curve leaves less acceleration for the ramps.
   static std::optional<Hump> quickest(std::span<const SpeedInterval> region, double begin, double from, double end,
                                       double to, double most) {
     std::optional<Hump> best;
@@ -164,7 +162,7 @@ class Profile {
       add_ramp(phases_, top, to, found->falling);
   }
 
-  /// From the first part that binds to the last: faster in between.
+  /// From the first limiting part to the last: faster in between.
   void level(std::span<const SpeedInterval> region, double begin, double end, double top, double binding, int depth) {
     double here = begin;
     for (const SpeedInterval& interval : region) {
@@ -178,7 +176,8 @@ class Profile {
     if (here < end) plan(here, top, end, top, depth + 1);
   }
 
-  /// Nothing binds at this top, which was chosen for its acceleration: another, gentler step up where that is worth it.
+  /// No limit applies at this top, which was chosen for its acceleration: try another, smaller step up if it saves
+  /// time.
   void climb(const Hump& found, double begin, double end, int depth) {
     const double cruise_begin = begin + found.up(), cruise_end = end - found.down();
     const auto region = between(cruise_begin, cruise_end);
@@ -191,11 +190,11 @@ class Profile {
     add_ramp(phases_, found.top, found.to, found.falling);
   }
 
-  /// Both speeds were reached by other limits than hold here up to a higher one: no faster than the faster of them.
+  /// Both speeds were reached with other limits than those up to a higher speed, so use at most the higher of the two.
   void keep(double begin, double from, double end, double to, std::span<const SpeedInterval> region, double most) {
     const double top = std::max(from, to);
     if (const auto found = hump(region, begin, from, end, to, std::min(most, top))) return add(*found);
-    // As the ramp of the level before had it.
+    // As in the ramp of the previous level.
     const double time = 2.0 * (end - begin) / (from + to);
     const double jerk = 4.0 * (to - from) / (time * time);
     add_phase(phases_, time / 2.0, jerk);

@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// Of the motion along a path.
+/// Limits of the motion along a path.
 struct TangentialLimits {
   double acceleration = 0.0;  ///< mm/s^2
   double jerk = 0.0;          ///< mm/s^3
@@ -16,10 +16,10 @@ struct TangentialLimits {
 struct SpeedInterval {
   double begin = 0.0, end = 0.0;
   double speed = 0.0;                              ///< mm/s
-  std::function<TangentialLimits(double)> limits;  ///< that hold up to a speed
+  std::function<TangentialLimits(double)> limits;  ///< that are valid up to a speed
 };
 
-/// A time of constant jerk.
+/// A phase of constant jerk.
 struct SpeedPhase {
   double duration_s = 0.0;
   double jerk = 0.0;  ///< mm/s^3
@@ -30,9 +30,9 @@ struct SpeedState {
 };
 SpeedState after(const SpeedState& state, double time_s, double jerk);
 
-/// Over intervals that follow each other without gaps, from rest at the first's begin to rest at the last's end. Rises
-/// to the lowest of the speeds that the intervals allow, then between those that bind to the next lowest, and so on:
-/// the acceleration is 0 where a limit begins or ends to bind, and nowhere else without need.
+/// Profile over consecutive intervals without gaps, from rest at the beginning of the first to rest at the end of the
+/// last. It rises to the lowest speed that the intervals allow, then between the limiting intervals to the next lowest,
+/// and so on. The acceleration is 0 where a limit begins or ends to apply, and otherwise only if necessary.
 std::vector<SpeedPhase> speed_profile(const std::vector<SpeedInterval>& intervals);
 
 }  // namespace host

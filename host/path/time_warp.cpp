@@ -29,14 +29,14 @@ Basis basis_at(const std::vector<double>& times, std::size_t cell, double share)
   return b;
 }
 
-/// Where limits are checked: what r^2 and its derivatives may be there.
+/// Bounds of r^2 and its derivatives at a checked point.
 struct Checked {
   std::array<Local, 3> acceleration, jerk;  ///< of each axis, by its limit
   double most = 0.0;                        ///< of r^2
 };
 
-/// The sum of times and of the logarithms of what is left of each limit, with its gradient and (but for the curvature
-/// of the jerk's factor) its Hessian.
+/// The sum of times and of the logarithms of the remaining limits, with its gradient and its Hessian (without the
+/// curvature of the jerk's factor).
 class Barrier {
  public:
   Barrier(std::vector<Checked> points, const std::vector<double>& times) : points_(std::move(points)) {
@@ -49,7 +49,7 @@ class Barrier {
   std::size_t coefficients() const { return points_.size() / kPoints + 2; }
   double constraints() const { return 14.0 * static_cast<double>(points_.size()); }
 
-  /// Nothing beyond a limit.
+  /// Empty beyond a limit.
   std::optional<double> value(const Eigen::VectorXd& c, double weight) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -150,7 +150,7 @@ Checked checked(const WarpDemand& d, const AxisLimits& limits) {
   return made;
 }
 
-/// The even rate from which there is room to all limits.
+/// The constant rate that is inside all limits.
 std::optional<Eigen::VectorXd> beginning(const Barrier& barrier) {
   for (double square = 0.95; square > 0.2; square *= 0.9) {
     Eigen::VectorXd c = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(barrier.coefficients()), square);

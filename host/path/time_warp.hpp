@@ -1,4 +1,4 @@
-// A motion along a path made quicker within the same limits, by another course of time along it.
+// Makes a motion along a path faster within the same limits by changing its time scale.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace host {
 struct WarpDemand {
   PathPoint velocity, acceleration, jerk;
   double fastest = 0.0;  ///< the rate at which the feed is reached
-  double share = 1.0;    ///< of the limits of acceleration and jerk that it may take
+  double share = 1.0;    ///< allowed share of the limits of acceleration and jerk
 };
 
 /// Time t for each time tau of a motion, with the rate r = dtau / dt, r^2 piecewise quadratic over tau and smooth: the
@@ -20,11 +20,11 @@ struct WarpDemand {
 /// Time-optimal path tracking for robots, 2009; the jerk after Debrouwere et al., 2013).
 class TimeWarp {
  public:
-  /// None: t = tau.
+  /// No warp: t = tau.
   TimeWarp() = default;
-  /// The quickest of those over cells that begin and end at these times, within a thousandth or two, by an
-  /// interior-point method that begins at an even rate. The motion begins at rest at 0 and ends at rest; `demand`: of a
-  /// part of it between two times.
+  /// The fastest warp over cells between these times, to within one or two thousandths, by an interior-point method
+  /// that begins at a constant rate. The motion begins at rest at 0 and ends at rest; `demand`: that of a part of the
+  /// motion between two times.
   TimeWarp(std::vector<double> cells, const std::function<WarpDemand(double, double)>& demand,
            const AxisLimits& limits);
 
@@ -34,9 +34,9 @@ class TimeWarp {
     double rate = 1.0, rate_change = 0.0;  ///< dtau / dt, and its derivative by t, 1/s
   };
   State at(double warped_s) const;
-  /// t of a tau.
+  /// t for a tau.
   double warped(double time_s) const;
-  /// t where cells meet between which the change of the rate changes by more than next to nothing.
+  /// Times t between two cells at which the change of the rate jumps noticeably.
   const std::vector<double>& bends() const { return bends_; }
 
  private:

@@ -25,8 +25,8 @@ double dispersion_of(const std::vector<Rival>& rivals, const RecordSet& both) {
   return std::max(1.0, least);
 }
 
-/// What the table costs each rival beyond the motor, re-fitted to both; a scale's own errors, which all rivals lack,
-/// are dispersion.
+/// chi^2 of the table in addition to the motor's, for each rival refitted to both. The scale's own errors, which all
+/// rivals lack, count as dispersion.
 void add_table(Decision& decision, const RecordSet& both, const RecordSet& before) {
   const std::size_t rivals = decision.rivals.size();
   std::vector<Information> table(rivals), motor(rivals);

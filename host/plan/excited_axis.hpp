@@ -66,7 +66,7 @@ class ExcitedAxis {
     return state;
   }
 
-  /// Of the encoder, relative to the axis's first position, mm (m).
+  /// Position of the encoder relative to the axis's first position, mm (m).
   double offset() const {
     return static_cast<double>(axes_[0].telemetry().encoder_counts - start_counts_) * data_.encoder_resolution;
   }

@@ -43,7 +43,8 @@ struct Plan {
   bool separable = false;  ///< some pair is
   std::string by_hand;     ///< tests for the pairs that are not, in words; empty if all are
   RunPlan run;             ///< without pieces if nothing is separable
-  /// Of the true rival to the most similar one that the run separates from it: geometric mean over the possible truths.
+  /// Odds of the true rival to the most similar one that the run separates from it: geometric mean over the possible
+  /// truths.
   double expected_odds = 1.0;
   std::vector<ConsideredPiece> considered;  ///< best first
   std::vector<PredictedRun> predicted;      ///< with each rival true in turn

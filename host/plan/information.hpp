@@ -23,10 +23,10 @@ struct Information {
   double least() const;
 };
 
-/// Of motor and table, at the model's parameters, on a set. Empty if the model diverges.
+/// Information from motor and table, at the model's parameters, on a set. Empty if the model diverges.
 Information information_of(const sim::DriveDescription& model, const RecordSet& set);
 
-/// Of the motor alone.
+/// Information from the motor alone.
 Information information_of_motion(const sim::DriveDescription& model, const RecordSet& set);
 
 /// Of x2 - x alone, where a scale on the table was recorded: over each window its mean square over the square of both

@@ -128,7 +128,7 @@ Answer add(const py::object& model, const std::string& kind, const py::sequence&
   });
 }
 
-/// Frequency in Hz, then damping and, of a notch, depth: those that are not given are the usual ones.
+/// Frequency in Hz, then damping and, for a notch, depth; missing values have their defaults.
 host::ControlFilterChoice filters_of(const std::vector<double>& notch, const std::vector<double>& low_pass) {
   host::ControlFilterChoice filters;
   if (!notch.empty()) filters.notch = host::Notch{notch[0]};

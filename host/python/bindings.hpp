@@ -1,4 +1,4 @@
-// What the module axistool._host holds, part by part.
+// The parts of the module axistool._host.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -25,7 +25,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Of one axis, at a socket, from its making until close().
+/// A simulated board with one axis at a socket, until close().
 class SimulatedBoard {
  public:
   SimulatedBoard(const sim::DriveDescription& drive, const std::string& socket)
@@ -106,7 +106,7 @@ void disable(const Device& device) {
   });
 }
 
-/// What `capture` without further options records: the usual channels at loop rate.
+/// The capture of `capture` without further options: the usual channels at loop rate.
 host::CaptureSettings settings_of(const firmware::ParameterValues& values, const std::string& axis, double seconds,
                                   const std::vector<std::string>& jogs) {
   host::CaptureSettings settings;

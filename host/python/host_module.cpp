@@ -23,7 +23,7 @@ void raise(const host::Failure& failure) {
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
 
-/// A log as it lies in the file: all columns that hold numbers.
+/// A log with all columns that contain numbers.
 host::RecordColumns read_columns(const std::string& path) {
   host::Log log = host::read_log(path);
   host::RecordColumns result;
@@ -65,7 +65,7 @@ void bind_records(py::module_& module) {
 }  // namespace axistool_python
 
 PYBIND11_MODULE(_host, module) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs steps that it tried in vain
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs rejected steps
   pybind11::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Soon enough for a hand on the keyboard, seldom enough to cost nothing.
+/// Short enough for a user at the keyboard, long enough to cost no time.
 constexpr std::chrono::milliseconds kInterval{50};
 
 class Listener {

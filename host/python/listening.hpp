@@ -1,4 +1,4 @@
-// Long work beside the interpreter: it goes on without Python's lock, while the caller's thread hears Ctrl-C.
+// Long work beside the interpreter: it runs without Python's lock, while the caller's thread handles Ctrl-C.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,15 +10,15 @@
 
 namespace axistool_python {
 
-/// Takes the share of the work that is done, 0..1, from any thread (host::ShareDone).
+/// Receives the finished share of the work, 0..1, from any thread (host::ShareDone).
 using Told = std::function<void(double)>;
 
-/// A thread that no signal interrupts: they are for Python's.
+/// A thread that no signal interrupts; signals are for Python's thread.
 std::thread quiet_thread(std::function<void()> work);
 
-/// Runs `work` in a thread of its own. Meanwhile tells `progress` (a callable of share and `what`, or None), in the
-/// caller's thread, how far it is, and lets Python handle signals. What either raises cancels the work and comes out of
-/// here; else what the work throws does.
+/// Runs `work` in a separate thread. Meanwhile, in the caller's thread, calls `progress` (a callable of share and
+/// `what`, or None) and lets Python handle signals. An exception of either cancels the work and is thrown here;
+/// otherwise exceptions of the work are thrown.
 void listen_while(const pybind11::object& progress, const std::string& what,
                   const std::function<void(const Told&)>& work);
 

@@ -1,4 +1,4 @@
-// What diagnose, improve, add and plan begin with: a model, and records to train and to validate on.
+// Input of diagnose, improve, add and plan: a model, and records for training and validation.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,4 +1,4 @@
-// Records and models as Python gives them: a path, or what is in memory.
+// Records and models from Python: a path, or data in memory.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,14 +16,14 @@ struct Path {
   std::string text;
 };
 
-/// Read where the work is done, after Python's part of it.
+/// Read in the worker thread, after Python's part.
 class RecordSource {
  public:
-  /// A path (str), or a tuple of columns (dict of NumPy arrays by their names) and header (dict of str). `name` is for
-  /// messages on what is in memory.
+  /// A path (str), or a tuple of columns (dict of NumPy arrays by their names) and header (dict of str). `name`: of
+  /// data in memory, for messages.
   RecordSource(const pybind11::handle& given, std::string name);
   host::Record read() const;
-  /// The path; of what is in memory, its name for messages.
+  /// The path; for data in memory, its name for messages.
   const std::string& name() const;
 
  private:
@@ -31,7 +31,7 @@ class RecordSource {
   std::variant<Path, host::RecordColumns> given_;
 };
 
-/// Of a sequence of such.
+/// The same for a sequence.
 std::vector<RecordSource> record_sources(const pybind11::sequence& given, const std::string& role);
 /// Their names, with commas.
 std::string names_of(const std::vector<RecordSource>& sources);

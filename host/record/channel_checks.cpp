@@ -19,7 +19,7 @@ namespace {
 /// Least travel that counts as motion, in encoder steps: beyond dither of a count or two at rest, and beyond the
 /// elastic travel before breakaway of a fine encoder.
 constexpr double kMovedSteps = 20.0;
-/// Travel by the tachometer that any encoder on the axis must see: with 0.1 mm/rad (a fine screw) 0.05 mm.
+/// Travel according to the tachometer that any encoder on the axis must show: with 0.1 mm/rad (a fine screw) 0.05 mm.
 constexpr double kSeenTravel_rad = 0.5;
 constexpr double kSeenTravel_m = 1e-3;
 /// Speed that is motion, in standard deviations of its noise (a tachometer at rest stays within six).
@@ -66,11 +66,11 @@ double smallest_step(const std::vector<double>& values) {
   return smallest;
 }
 
-/// The coarsest step that the position can have been counted in: no change is smaller, and no two changes differ by
-/// less. At a steady speed the changes are large all the same, but they differ by single steps.
+/// The coarsest possible step of the position's counter: no change is smaller, and no two changes differ by less. At a
+/// steady speed all changes are large, but they differ by single steps.
 double coarsest_step(const std::vector<double>& values) {
   double coarsest = smallest_step(values);
-  // As many digits as a text holds; what is below is its rounding.
+  // Rounds to the digits that a text holds, because finer digits are rounding errors.
   constexpr double kRounding = 1e-6;
   for (std::size_t k = 2; k < values.size(); ++k) {
     const double change = values[k] - values[k - 1], before = values[k - 1] - values[k - 2];
@@ -98,7 +98,7 @@ double noise_of(const std::vector<double>& values) {
   return values.size() < 3 ? 0.0 : std::sqrt(squares / kGain / static_cast<double>(values.size() - 2));
 }
 
-/// Means over blocks of `length` rows; what is left at the end is not used.
+/// Means over blocks of `length` rows; remaining rows at the end are not used.
 std::vector<double> block_means(const std::vector<double>& values, std::size_t length) {
   std::vector<double> means;
   for (std::size_t start = 0; start + length <= values.size(); start += length) {
@@ -364,7 +364,7 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
            fmt::format("missing column: i_A; the record holds the command u_V, but this drive's data sheet gives "
                        "torque or force only for the current: add {} to [drive], or log i_A",
                        sheet.kind == sim::DriveKind::rotary ? "amplifier_gain_A_per_V" : "force_constant_N_per_V"));
-    record.u_V.clear();  // nothing is known of it
+    record.u_V.clear();  // its command in volts is unknown
   }
   scale(record.x, record.kind, sheet.kind);
   scale(record.x2, record.kind, sheet.kind);

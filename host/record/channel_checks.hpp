@@ -16,7 +16,8 @@ inline constexpr double kLargestCurrent_A = 10000.0;
 /// spindle. Beyond, sums of squares lose precision.
 inline constexpr double kFarthest = 1e9;
 inline constexpr double kFastest = 1e6;
-/// Absolute zero, and what no part of a feed drive survives (kelvins read as Celsius lie above it), deg C.
+/// Absolute zero, and a temperature that no part of a feed drive survives (kelvins read as Celsius are above it), deg
+/// C.
 inline constexpr double kLowestTemperature_C = -273.15;
 inline constexpr double kHighestTemperature_C = 200.0;
 
@@ -29,9 +30,9 @@ void check_channels(const Record& record);
 /// where the record holds a speed or a command that a drive of that kind does not have.
 void adapt_to(Record& record, const sim::DataSheet& sheet);
 
-/// Checks a record that is adapted to its drive: speed against position by way of the lead, position against the
-/// encoder's resolution, command against the D/A converter's range. Throws Failure(bad_input) naming the column and the
-/// unit that would fit.
+/// Checks a record that is adapted to its drive: speed against position using the lead, position against the encoder's
+/// resolution, command against the D/A converter's range. Throws Failure(bad_input) naming the column and the unit that
+/// would fit.
 void check_units(const Record& record, const sim::DataSheet& sheet);
 
 /// Refuses a record that was sampled more slowly than `lowest_Hz`. `purpose` completes "too slow to …".

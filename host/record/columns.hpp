@@ -1,4 +1,4 @@
-// The columns that `axis-record/1` knows: which channel each fills, and in which unit.
+// The columns of `axis-record/1`: the channel and the unit of each.
 #pragma once
 
 #include <optional>
@@ -50,17 +50,17 @@ inline const KnownColumn* find_known_column(std::string_view name) {
   return nullptr;
 }
 
-/// What a channel is called in files that hold the drive's own units (rotary: mm, rad/s; linear: m, m/s).
+/// Name of a channel in files with the drive's own units (rotary: mm, rad/s; linear: m, m/s).
 std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKind kind);
 
-/// What the file that the record came from calls a channel; column_name() where it came from none.
+/// Name of a channel in the record's file; column_name() if the record does not come from a file.
 std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel);
 
 /// Fault of a set of column names: a duplicate, two for the same quantity or of different kinds of drive, or a required
 /// one missing. Empty if there is none.
 std::string fault_of_columns(std::span<const std::string_view> names);
 
-/// Numbers under one of the names that the format knows, in the unit of that name.
+/// Numbers under one of the format's column names, in the unit of that name.
 struct NamedColumn {
   std::string_view name;
   std::vector<double> values;
@@ -70,7 +70,7 @@ struct NamedColumn {
 std::string fault_of_copies(std::span<const NamedColumn> columns);
 
 /// Puts columns into the record's channels, in the drive's own units, and finds the kind of drive by its speed column.
-/// Needs names without fault.
+/// The names must be free of faults.
 void fill_channels(std::vector<NamedColumn> columns, Record& record);
 
 }  // namespace host

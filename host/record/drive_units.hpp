@@ -14,7 +14,7 @@ constexpr DriveUnits units_of(sim::DriveKind kind) {
                                         : DriveUnits{"m", "m/s", "N", "m/s²"};
 }
 
-/// Travel is shown in mm: what a length of the drive's own unit is multiplied by.
+/// Factor from the drive's unit of length to mm, in which travel is shown.
 constexpr double travel_in_mm(sim::DriveKind kind) { return kind == sim::DriveKind::rotary ? 1.0 : 1e3; }
 
 }  // namespace host

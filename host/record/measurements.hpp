@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// Records adapted to one drive, with their roles and what is doubtful about them. Only the gate
+/// Records adapted to one drive, with their roles and doubtful points. Only the gate
 /// (host/evidence/measurement_gate.hpp) makes them. Pointers to the records stay valid when it is moved.
 class Measurements {
  public:
@@ -21,14 +21,14 @@ class Measurements {
   const std::vector<Record>& validation() const { return validation_; }
   std::vector<const Record*> training_records() const { return pointers(training_); }
   std::vector<const Record*> validation_records() const { return pointers(validation_); }
-  /// Those of training, then those of validation.
+  /// The training records, then the validation records.
   std::vector<const Record*> all_records() const {
     std::vector<const Record*> all = training_records();
     for (const Record& record : validation_) all.push_back(&record);
     return all;
   }
 
-  /// Faults that are doubtful only, and fatal ones that the user accepted.
+  /// Faults that are not fatal, and fatal ones that the user accepted.
   const std::vector<LogFault>& log() const { return log_; }
 
  private:

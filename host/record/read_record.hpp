@@ -8,13 +8,13 @@
 
 namespace host {
 
-/// Fewest rows of a record: identification has four unknowns, and five rows for each is the least that leaves a
-/// residual worth looking at.
+/// Fewest rows of a record: identification has four unknowns, and a meaningful residual needs at least five rows for
+/// each.
 inline constexpr std::size_t kFewestRows = 20;
 
-/// Reads and checks a record. The kind of drive follows from the speed column; a record with a position alone is
-/// presumed rotary in mm and linear in m until adapt_to() meets its drive.
-/// Throws Failure(bad_input) naming file, line, column and remedy.
+/// Reads and checks a record. The kind of drive follows from the speed column; a record with only a position is
+/// presumed rotary if it is in mm and linear if in m, until adapt_to() knows its drive. Throws Failure(bad_input)
+/// naming file, line, column and remedy.
 Record read_record(const std::string& path);
 
 /// The same from text that is already in memory; `name` stands for the path in messages.

@@ -11,23 +11,23 @@
 
 namespace host {
 
-/// One column that the analysis does not interpret, kept as it was read.
+/// One column that the analysis does not interpret; it is kept unchanged.
 struct ExtraChannel {
   std::string name;
   std::vector<double> values;     ///< NaN where the field is not a number
   std::vector<std::string> text;  ///< the fields as they stand in the file, when some of them is not a finite number
 };
 
-/// Samples of one test. All channels present have the same length N >= 2; row k holds what was sampled at t_s[k] and
-/// the command computed from it and applied from then on. Travel and speed are in the drive's own units: rotary: x in
-/// mm, w in rad/s; linear: x in m, w in m/s (files in mm and mm/s are scaled when they are read).
+/// Samples of one test. All channels present have the same length N >= 2; row k holds the samples at t_s[k], and the
+/// command that was computed from them and applied from then on. Travel and speed are in the drive's own units: rotary:
+/// x in mm, w in rad/s; linear: x in m, w in m/s (files in mm and mm/s are scaled when they are read).
 struct Record {
-  std::string path;            ///< where it came from, for messages
-  std::size_t names_line = 0;  ///< line of that file which holds the column names, row k stands k + 1 below; 0: none
+  std::string path;                  ///< where it came from, for messages
+  std::size_t names_line = 0;        ///< line with the column names in that file (row k is k + 1 lines below); 0: none
   std::vector<std::string> columns;  ///< names of the channels as that file gives them, with its units
   std::string drive;                 ///< `# drive:` of the header; may be empty
   sim::DriveKind kind = sim::DriveKind::rotary;
-  bool kind_is_presumed = false;              ///< only a position was recorded: mm may belong to either kind of drive
+  bool kind_is_presumed = false;              ///< only a position was recorded, so mm may mean either kind of drive
   double sample_period_s = 0.0;               ///< Ts: the header's where it gives one (t_s agrees), else from t_s
   std::map<std::string, std::string> header;  ///< every `# key: value` line
   std::vector<double> t_s;

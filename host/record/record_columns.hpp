@@ -1,4 +1,4 @@
-// Records as named columns of numbers, in memory, for programs that have them there.
+// Records as named columns of numbers in memory, for other programs.
 #pragma once
 
 #include <map>
@@ -15,12 +15,12 @@ struct RecordColumns {
   std::map<std::string, std::string> header;  ///< the lines "# key: value"; "format" may be absent
 };
 
-/// With the checks of read_record(), and the record that it would make of the same numbers in a file: stamps count as
+/// Makes the record that read_record() would make of the same numbers in a file, with the same checks. Stamps count as
 /// exact to the digits that they need. `name` stands for the path in messages; rows count from 0. Throws
 /// Failure(bad_input).
 Record record_of(RecordColumns columns, const std::string& name);
 
-/// What write_record() would write.
+/// The columns that write_record() would write.
 RecordColumns columns_of(const Record& record);
 
 }  // namespace host

@@ -11,7 +11,7 @@ namespace host {
 /// The record's file without its folders.
 std::string file_name(const Record& record);
 
-/// The files of all records, "jog.csv, sweep.csv": what a model says that it was identified from.
+/// The files of all records, "jog.csv, sweep.csv": the origin that a model states.
 std::string origin_of(const std::vector<Record>& records);
 
 }  // namespace host

@@ -35,7 +35,7 @@ std::string with_point(std::string_view field) {
   return plain;
 }
 
-/// The first lines that hold something: enough to tell a preamble from a table.
+/// The first lines that are not empty: enough to tell a preamble from a table.
 std::vector<std::string_view> sample_of(std::string_view text) {
   constexpr std::size_t kLines = 400;
   std::vector<std::string_view> lines;
@@ -44,7 +44,7 @@ std::vector<std::string_view> sample_of(std::string_view text) {
   return lines;
 }
 
-/// How many of the lines have the layout's number of fields, weighed by the share of fields that are numbers or times.
+/// Number of lines with the layout's number of fields, weighted by the share of fields that are numbers or times.
 double merit_of(TableLayout& layout, const std::vector<std::string_view>& lines) {
   std::map<std::size_t, std::size_t> lines_with;
   Fields fields;

@@ -1,4 +1,4 @@
-// How the lines of a table are divided: found from the lines themselves.
+// Layout of a table's lines (separator, decimal sign, number of fields), determined from the lines.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct TableLayout {
   std::string_view separator_name() const;
 };
 
-/// The layout under which most of the lines have equally many fields and most of those are numbers or times.
+/// The layout with which most lines have the same number of fields, and most fields are numbers or times.
 TableLayout find_layout(std::string_view text);
 
 /// A line of remarks in front of a table.

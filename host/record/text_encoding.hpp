@@ -1,4 +1,4 @@
-// Text as programs of other systems save it.
+// Converts text files of other systems to UTF-8.
 #pragma once
 
 #include <string>

@@ -24,14 +24,14 @@ double median_step(const std::vector<double>& t_s) {
   return median(std::move(steps));
 }
 
-/// What rounding of the stamps alone may add to a step: nothing where the period is a whole number of last digits.
+/// Error of a step due to rounding of the stamps alone: none if the period is a whole number of last digits.
 double rounding_of_a_step(const TimeAxis& axis, double period_s) {
   if (!(axis.stamp_resolution_s > 0.0) || !std::isfinite(axis.stamp_resolution_s)) return 0.0;
   const double digits = period_s / axis.stamp_resolution_s;
   return std::abs(digits - std::round(digits)) < 1e-3 ? 0.0 : axis.stamp_resolution_s;
 }
 
-/// The period in as few digits as describe it: what a person would ask for.
+/// The period with as few digits as describe it, as a person would write it.
 double round_period(double period_s) {
   constexpr double kNear = 2e-3;
   for (int digits = 0; digits < 6; ++digits) {

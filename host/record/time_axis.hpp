@@ -1,4 +1,4 @@
-// Are samples evenly spaced? One answer for records and for logs that are being imported.
+// Checks that samples are evenly spaced, with the same criterion for records and imported logs.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr double kPeriodTolerance = 1e-3;
 
 struct TimeAxis {
   const std::vector<double>& t_s;
-  double stamp_resolution_s;  ///< weight of the last digit of the stamps as they stand in the file; 0: exact
+  double stamp_resolution_s;  ///< weight of the last digit of the stamps in the file; 0: exact
   std::size_t first_line;     ///< line of the file that holds row 0; 0 where the file has no lines
 };
 
@@ -38,7 +38,7 @@ struct Spacing {
 /// Throws Failure(bad_input) where time does not increase, naming the line. Needs two rows at least.
 void check_time_increases(const TimeAxis& axis, const std::string& path);
 
-/// How evenly increasing stamps are spaced.
+/// Measures how evenly increasing stamps are spaced.
 Spacing measure_spacing(const TimeAxis& axis);
 
 /// The sample period, s. Throws Failure(bad_input) where time does not increase, samples were dropped, steps jitter, or

@@ -1,4 +1,4 @@
-// A cloud of samples as a curve: the mean in bins along a coordinate, with the spread.
+// Scattered samples as a curve: the mean in bins along a coordinate, with the spread.
 #pragma once
 
 #include <cstddef>
@@ -20,17 +20,19 @@ struct BinnedCurve {
   std::vector<double> samples;  ///< in the bin
 };
 
-/// About the wanted width (> 0), so that a ripple of this period does not alias in the means: a whole number of
-/// periods, over which it averages out, or a whole part of one that is small enough to show it. Period 0: as wanted.
+/// A bin width close to the wanted one (> 0) with which a ripple of this period does not alias in the means: a whole
+/// number of periods, which averages it out, or a whole fraction of one that is small enough to show it. Period 0: the
+/// wanted width.
 double bin_width(double wanted, double period);
 
-/// Bins are as wide as the range of x over `bins`, by bin_width() for the period, or wider until they hold
-/// `min_samples`; what is left at the end of a stretch joins the bin before it. Five widths without a sample end a
-/// stretch; one with fewer than `min_samples` in all is left out. Samples with a NaN are left out.
+/// The width of a bin is the range of x over `bins`, adapted by bin_width() to the period; a bin is wider if it would
+/// otherwise hold fewer than `min_samples`. Remaining samples at the end of a stretch join the last bin. Five widths
+/// without a sample end a stretch; a stretch with fewer than `min_samples` in all is left out, and so are samples with
+/// a NaN.
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
                          std::size_t min_samples = 10, double period = 0.0);
 
-/// As points that a line joins, with the spread as its band.
+/// As points joined by a line, with the spread as a band.
 ScatterSeries curve_series(const std::string& name, SeriesRole role, const BinnedCurve& curve);
 
 }  // namespace host

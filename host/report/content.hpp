@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// Meaning of a series. It determines the colour, so that the same quantity has the same colour in every figure.
+/// Meaning of a series. It determines the colour, so a quantity has the same colour in every figure.
 enum class SeriesRole { measured, predicted, residual, before, after, train, validate, floor, model, other };
 
 enum class Tone { good, attention, bad, neutral };
@@ -38,7 +38,7 @@ struct TracePanel {
   std::vector<TimeTrace> traces;
 };
 
-/// A stretch of time that is shaded, e.g. the windows with the largest error.
+/// A shaded time range, e.g. the windows with the largest error.
 struct TimeSpan {
   double from_s = 0.0;
   double to_s = 0.0;
@@ -64,9 +64,8 @@ struct ScatterSeries {
   std::vector<double> y;
   std::vector<double> lower;
   std::vector<double> upper;
-  std::vector<double> samples =
-      {};               ///< behind each point: drawn as a strip at the foot of the plot, told at the cursor
-  bool dashed = false;  ///< its line
+  std::vector<double> samples = {};  ///< number behind each point: a strip below the plot, shown at the cursor
+  bool dashed = false;               ///< its line
 };
 
 struct Axis {
@@ -84,8 +83,8 @@ struct ScatterPlot {
   bool logarithmic_y = false;  ///< values <= 0 leave gaps
   bool equal_scales = false;   ///< a unit of x is as long as a unit of y: for paths in a plane
   bool logarithmic_x = false;  ///< every x > 0
-  bool large = false;          ///< the whole width and twice the height: the figure that a reader looks at first
-  std::optional<std::pair<double, double>> y_range = {};  ///< shown at first, so that two plots can be compared
+  bool large = false;          ///< full width and twice the height: for the most important figure
+  std::optional<std::pair<double, double>> y_range = {};  ///< visible at first, so that two plots compare
 };
 
 /// The mean of a value over a grid in two coordinates, in colours that diverge from zero.
@@ -105,7 +104,7 @@ struct HeatMap {
   double limit = 1.0;          ///< > 0; values of this size and more have the strongest colour
 };
 
-/// One turn about the circle, or several: where the path is, and how far outside the circle (negative: inside).
+/// One or several turns of the path: angle on the circle, and deviation outwards (negative: inwards).
 struct PolarTrace {
   std::string name;
   SeriesRole role = SeriesRole::measured;
@@ -158,11 +157,11 @@ struct Table {
   std::string caption;
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> links = {};  ///< files that the rows' first cells lead to; may be empty
-  bool stacks = false;  ///< on a narrow screen each row becomes a block of its own, with the headings in it
+  std::vector<std::string> links = {};  ///< files to which the first cells of the rows link; may be empty
+  bool stacks = false;  ///< on a narrow screen each row becomes a separate block that repeats the headings
 };
 
-/// Pairs of name and value, set compactly.
+/// Pairs of name and value in a compact layout.
 struct Facts {
   std::string title;
   std::vector<std::pair<std::string, std::string>> items;

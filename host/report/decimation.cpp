@@ -8,7 +8,7 @@ namespace host {
 
 namespace {
 
-/// Appends where `values[from, to)` is smallest and largest, and where its first NaN is.
+/// Appends the indices of the smallest and largest value of `values[from, to)`, and of its first NaN.
 void append_extremes(std::span<const double> values, std::size_t from, std::size_t to, std::vector<std::size_t>& rows) {
   std::size_t lowest = to;
   std::size_t highest = to;

@@ -9,14 +9,14 @@
 
 namespace host {
 
-/// Every kind with its title and one line on how it shows, grouped by where it sits in the drive's signal path.
+/// Every kind with its title and one line on how it shows, grouped by its place in the drive's signal path.
 std::string effect_list(const Terminal& terminal);
 
-/// All that the catalogue knows of one effect, with an example for each kind of drive.
+/// The whole catalogue entry of one effect, with an example for each kind of drive.
 std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal);
 
-/// An entry for a model file with values that a drive of some kilowatts could have. Where one value may stand for both
-/// directions, that form.
+/// An entry for a model file with values typical of a drive of some kilowatts. If one value may stand for both
+/// directions, that form is used.
 std::string effect_example_toml(const sim::EffectInfo& info, sim::DriveKind kind);
 
 /// "axis-effects/1": the whole catalogue, or the one effect.

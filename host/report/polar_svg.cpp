@@ -51,7 +51,7 @@ std::string rings(double step_um, int count) {
     fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", kCentre + (reach + 14.0) * x,
                    kCentre - (reach + 14.0) * y + 4.0, name);
   }
-  // The outermost, the nominal and the innermost ring carry their figures, away from the axes.
+  // The outermost, the nominal and the innermost ring have labels, away from the axes.
   const double along = std::numbers::sqrt2 / 2.0;
   for (const int ring : {-count, 0, count}) {
     const double radius = kCircle + kRing * ring;

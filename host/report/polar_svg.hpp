@@ -7,8 +7,8 @@
 
 namespace host::html {
 
-/// A figure. The nominal circle has a fixed size; deviations are drawn outwards and inwards from it, magnified until
-/// the largest takes four rings at most, and the rings say how far apart they are.
+/// A figure. The nominal circle has a fixed size. Deviations are drawn outwards and inwards from it, magnified so that
+/// the largest takes at most four rings; labels give the distance between rings.
 std::string polar_plot(const PolarPlot& plot);
 
 }  // namespace host::html

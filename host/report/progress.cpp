@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// Often enough to look alive, seldom enough to cost nothing.
+/// Interval of updates: short enough for the user, long enough to cost no time.
 constexpr std::chrono::milliseconds redraw_interval(100);
 constexpr const char* wipe_line = "\r\x1b[K";
 

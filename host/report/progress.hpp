@@ -11,9 +11,9 @@
 namespace host {
 
 /// One line, rewritten in place, on a terminal only (never in a log or a pipe), and only once the work has taken longer
-/// than `patience`. All functions may be called from several threads. The line is wiped when the object dies.
-/// For programs, the environment variable AXIS_PROGRESS makes it lines of their own, on any stream and without
-/// patience: "progress SHARE WHAT", SHARE from 0 to 1.
+/// than `patience`. All functions may be called from several threads. The destructor erases the line. For programs, the
+/// environment variable AXIS_PROGRESS makes it lines of their own, on any stream and without patience: "progress SHARE
+/// WHAT", SHARE from 0 to 1.
 class Progress {
  public:
   /// `total`: number of steps that advance() will count, > 0.
@@ -26,7 +26,7 @@ class Progress {
   /// Counts finished steps; `detail` (may be empty) names what was just done.
   void advance(std::size_t steps = 1, std::string_view detail = "");
 
-  /// More work has turned up.
+  /// Adds steps to the total.
   void add_steps(std::size_t steps);
 
  private:

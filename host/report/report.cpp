@@ -25,7 +25,7 @@ constexpr const char* zoom_hint =
     "Drag to zoom, drag with Shift to pan, double-click to see everything. The cursor is shared; a click sets its "
     "reference, and Δ tells the differences.";
 
-/// Nothing is fetched: the file's own scripts and styles are all that a browser may use.
+/// The browser may use only the file's own scripts and styles; nothing is fetched.
 constexpr const char* content_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 

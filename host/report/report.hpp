@@ -1,4 +1,4 @@
-// One self-contained HTML file: opens from a mail, works offline, plots zoom and pan.
+// One self-contained HTML file with zoomable plots, which also works offline and from a mail.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ class Report {
   /// Begins a section; `text` (may be empty) explains it to the reader.
   void section(std::string heading, std::string text = "");
 
-  /// Figures and tables stand in the section begun last. Throws std::invalid_argument when the lengths of a plot's
-  /// series do not fit together.
+  /// Figures and tables are added to the section begun last. Throws std::invalid_argument if the series of a plot have
+  /// different lengths.
   void add(TimePlot plot);
   void add(ScatterPlot plot);
   void add(HeatMap map);

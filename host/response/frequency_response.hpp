@@ -17,7 +17,7 @@ struct ResponseLine {
   Eigen::Vector2cd plant = Eigen::Vector2cd::Zero();
   /// Covariance of the estimate by noise and nonlinearity together, E[e e^H].
   Eigen::Matrix2cd covariance = Eigen::Matrix2cd::Zero();
-  /// Of position, without one of speed: standard deviation of the estimate by noise alone, and deviation of one
+  /// For position (without one, for speed): standard deviation of the estimate by noise alone, and deviation of one
   /// realisation of the excitation from the best linear approximation, beyond noise.
   double noise = 0.0, nonlinearity = 0.0;
   double coherence = 1.0;  ///< of command and response; 1 if repeated periods separate the noise
@@ -41,7 +41,7 @@ struct FrequencyResponse {
   bool has_position = false, has_speed = false;
   std::size_t realisations = 0, periods = 0;  ///< smallest number of any line
   std::vector<ResponseLine> lines;
-  /// Of multisines only. Separates even nonlinearity (friction that falls with speed, a drive that is stronger in one
+  /// Only for multisines. Separates even nonlinearity (friction that falls with speed, a drive that is stronger in one
   /// direction) from odd (backlash, stiction, saturation) (Pintelon & Schoukens, 2nd ed., 3.4).
   std::vector<DistortionLine> even, odd;
   std::vector<std::string> warnings;

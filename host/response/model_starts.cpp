@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Of a sampling period: fits and clocks are uncertain by that much.
+/// In sampling periods: the uncertainty of fits and clocks.
 constexpr double kLeastDelay = 0.05;
 
 bool is_possible(const sim::EffectInfo& info, const char* id, double value) {

@@ -26,7 +26,7 @@ constexpr std::size_t kFewestReadings = 4, kMostReadings = 500;
 
 struct DialColumn {
   std::size_t place = 0;
-  double mm = 0.0;  ///< that one of its unit is
+  double mm = 0.0;  ///< per unit
 };
 
 class DialFile {
@@ -86,7 +86,7 @@ class DialFile {
     const double slope = moved.dot(dial) / moved.squaredNorm();
     if (slope < 0.0)
       for (double& one : readings_.dial_mm) one = -one;
-    // Of a move of a few hundredths of a millimetre backlash may take a good part.
+    // Backlash may take a large part of a move of a few hundredths of a millimetre.
     if (!(std::abs(slope) > 0.2) || std::abs(slope) > 2.0)
       fail(fmt::format("the gauge moves by {:.3g} of what the axis does: is the unit right?", slope));
   }
@@ -98,7 +98,7 @@ class DialFile {
   DialReadings readings_;
 };
 
-/// What a table in a play of so many mm is behind the motor, um. `first`: where it is in the play at first, -1 to 1.
+/// Lag of a table with this play (mm) behind the motor, um. `first`: its initial position in the play, -1 to 1.
 VectorXd play(const DialReadings& readings, double width, double first) {
   VectorXd behind(static_cast<Index>(readings.x_mm.size()));
   const double half = 0.5 * width;
@@ -133,7 +133,7 @@ DialFit fitted_from(const DialReadings& readings, double width, double first, bo
   return fit;
 }
 
-/// Nobody knows where in its play the table was at first.
+/// The initial position of the table in its play is unknown.
 DialFit fitted(const DialReadings& readings, double width, bool lead) {
   if (width == 0.0) return fitted_from(readings, width, 0.0, lead);
   DialFit best;
@@ -173,12 +173,12 @@ DialStudy study_dial(const DialReadings& readings) {
   study.reversals = reversals_of(readings.x_mm);
   const auto n = static_cast<double>(readings.x_mm.size());
   const auto [low, high] = std::ranges::minmax(readings.x_mm);
-  // A play as wide as the travel would not move the table at all; no machine loses 5 mm.
+  // Upper bound of the play: one as wide as the travel would not move the table at all, and no machine loses 5 mm.
   constexpr double kWidest_mm = 5.0;
   const double widest = study.reversals > 0 ? std::min(kWidest_mm, high - low) : 0.0;
   constexpr int kWidths = 1500;
   const auto width_at = [&](int step) { return widest * std::pow(static_cast<double>(step) / kWidths, 3); };
-  // Nobody reads a gauge finer than its step.
+  // Readings are not finer than the step of the gauge.
   const double least = n * std::pow(1e3 * smallest_step(readings.dial_mm), 2) / 12.0 + 1e-12;
   std::vector<double> squares[2];
   for (const bool lead : {false, true})

@@ -24,13 +24,13 @@ constexpr double kDegrees = 4.0;  // of the t distribution: see infer/evidence.h
 
 std::vector<DriveRange> free_numbers(const TableDrive& drive, double deceleration) {
   std::vector<DriveRange> numbers = shape_ranges(drive, deceleration);
-  // A size may be anything: bounds are those of machines, one mm of free travel and 3 Hz to 3 kHz with the motor held.
+  // Bounds of sizes are those of machines: 1 mm of free travel, and 3 Hz to 3 kHz with the motor held.
   if (drive.gap > 0.0) numbers.push_back({DriveNumber::gap, std::log(1e-5), std::log(1.0), 0.02, 0.0, HUGE_VAL});
   if (drive.lag > 0.0) numbers.push_back({DriveNumber::lag, std::log(2.8e-9), std::log(2.8e-3), 0.02, 0.0, HUGE_VAL});
   return numbers;
 }
 
-/// y less what the table does and what the other columns take, whitened.
+/// y minus the table's motion and the other columns, whitened.
 class Remainder {
  public:
   Remainder(const TableRows& rows, const Evidence& evidence, const MatrixXd& others, const NoiseColour& colour)
@@ -55,7 +55,7 @@ class Remainder {
     return white - taken_ * (taken_.transpose() * white);
   }
 
-  /// The noise's scale at which these are most probable.
+  /// The most probable scale of the noise for these residuals.
   double scale_of(const VectorXd& left) const {
     const double least = evidence_.least_noise() * evidence_.least_noise();
     double square = std::max(0.25 * left.squaredNorm() / static_cast<double>(left.size()), least);
@@ -161,8 +161,8 @@ TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, con
   return drive;
 }
 
-/// Drives about one, by what the rows tell least: along each principal axis of the information, and between them, from
-/// one standard deviation to many. The drive itself is the first.
+/// Drives around one, in the least determined directions: along each principal axis of the information, and between
+/// them, from one standard deviation to many. The drive itself is the first.
 std::vector<TableDrive> cloud_about(const TableDrive& drive, const std::vector<DriveRange>& numbers,
                                     const Remainder& remainder, Index rows) {
   const auto count = static_cast<Index>(numbers.size());
@@ -221,7 +221,8 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     least = costs.front().first;
   };
   price(0);
-  // Between sizes that lose as much at a reversal lie worse ones: the best of each gap, or of each spring, goes on.
+  // Between sizes with equal lost motion at a reversal there are worse ones, so the best of each gap, or of each
+  // spring, continues.
   std::vector<TableDrive> best_of_each;
   for (const TableDrive& start : starts)
     if (std::ranges::none_of(best_of_each, [&](const TableDrive& kept) {
@@ -230,7 +231,7 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
       best_of_each.push_back(start);
   starts = std::move(best_of_each);
   constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // starts that go on, iterations
-  // What does not fit better than a table that follows the motor once it has begun to move is none.
+  // A drive that does not fit better than a table that follows the motor once it moves is rejected.
   const double most = is_new ? remainder.cost_of(remainder.of_none()) : HUGE_VAL;
   const auto go_on = [&] {
     for (const auto& [kept, iterations] : kRounds) {
@@ -240,13 +241,13 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     }
   };
   go_on();
-  // A table sticks, slides and touches: between the best fits lie worse ones.
+  // Because a table sticks, slides and touches, there are worse fits between the best ones.
   constexpr int kClouds = 3;
   for (int cloud = 0; cloud < kClouds && least < most; ++cloud) {
     const double before = least;
     starts = cloud_about(starts.front(), numbers, remainder, rows.size());
     price(0);
-    // A fit that only follows what changed beside it goes on where the cloud has a better drive.
+    // A fit that only follows changes of other terms continues from a better drive of the cloud.
     if (!is_new && !(least < before - 1.0)) break;
     starts.resize(std::min<std::size_t>(is_new ? 2 : 1, starts.size()));
     price(12);

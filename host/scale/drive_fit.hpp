@@ -9,9 +9,10 @@
 
 namespace host {
 
-/// The most probable table within bounds, beside columns whose factors are free. All starts have a gap or none, a
-/// spring or none; what they lack stays away. Levenberg-Marquardt (Ceres) from the best few of them, with the noise of
-/// infer/evidence.hpp of this colour. `deceleration`: see shape_ranges(). Starts are at least one.
+/// The most probable table within bounds, fitted together with columns whose factors are free. Either all starts have a
+/// gap or none has; the same for a spring. A part that they lack is not added. Levenberg-Marquardt (Ceres) from the
+/// best few of them, with the noise of infer/evidence.hpp of this colour. `deceleration`: see shape_ranges(). Starts
+/// are at least one.
 TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, const Evidence& evidence,
                      const Eigen::MatrixXd& others, const NoiseColour& colour, double deceleration);
 

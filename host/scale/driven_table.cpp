@@ -8,16 +8,16 @@ namespace host {
 
 namespace {
 
-/// At every sample, mm: the table less the motor, and what of it is the spring's.
+/// At every sample, mm: table minus motor, and the spring's part of it.
 struct DrivenSamples {
   std::vector<double> all, spring;
 };
 
-/// Tables that are simulated side by side, without a branch: what a table does next is hard to foresee for a processor.
+/// Tables that are simulated in parallel, without branches, which a processor could not predict.
 constexpr std::size_t kAbreast = 8;
 using Abreast = Eigen::Array<double, kAbreast, 1>;
 
-/// Of drives[first] onwards; where there are fewer, the last one again.
+/// From drives[first] on; if there are fewer, the last one is repeated.
 Abreast abreast(std::span<const TableDrive> drives, std::size_t first, double TableDrive::*member) {
   Abreast values;
   for (std::size_t lane = 0; lane < kAbreast; ++lane)
@@ -25,7 +25,7 @@ Abreast abreast(std::span<const TableDrive> drives, std::size_t first, double Ta
   return values;
 }
 
-/// What is beyond a band about zero.
+/// The part beyond a band about zero.
 [[gnu::always_inline]] inline Abreast beyond(const Abreast& value, const Abreast& band) {
   return value - value.min(band).max(-band);
 }
@@ -60,7 +60,7 @@ void sprung(std::span<const TableDrive> drives, std::size_t first, const std::ve
                 damping = 2.0 * omega * abreast(drives, first, &TableDrive::damping),
                 deceleration = abreast(drives, first, &TableDrive::deceleration),
                 drag = abreast(drives, first, &TableDrive::drag);
-  // A contact behind a gap pushes alone; what is bolted pulls as well.
+  // A contact behind a gap only pushes; a bolted connection also pulls.
   const Abreast bolted = (half > 0.0).select(Abreast::Zero(), Abreast::Constant(kAnyPull));
   const int parts = std::max(1, static_cast<int>(std::ceil(omega.maxCoeff() * period_s / kRadians)));
   const double step = period_s / parts;
@@ -83,7 +83,7 @@ void sprung(std::span<const TableDrive> drives, std::size_t first, const std::ve
   }
 }
 
-/// What is read so much later, mm.
+/// Change of the reading by this delay, mm.
 void delay(std::vector<double>& values, double late_s, double period_s) {
   if (late_s == 0.0 || values.size() < 3) return;
   const std::vector<double> before = values;

@@ -101,8 +101,9 @@ void fill_compliance(const TableTerm& term, const MatrixXd& own, const sim::Driv
   const double lag = 1e3 * term.drive.lag, lag_off = std::sqrt(own(0, 0)) / lag;  // relative
   const double resonance = 1.0 / (2.0 * std::numbers::pi * std::sqrt(term.drive.lag));
   const sim::Drive drive(model);
-  // The motor's motion tells the table's friction over its inertia; the model tells what the friction is. Bearings and
-  // seals of the motor take a tenth of a drive's friction, give or take as much (textbook).
+  // The motor's motion determines the ratio of the table's friction to its inertia; the friction comes from the model.
+  // Bearings and seals of the motor have a tenth of a drive's friction, with an uncertainty of the same size
+  // (textbook).
   constexpr double kMotorsFriction = 0.1;
   const double friction = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) * (1.0 - kMotorsFriction);
   if (friction > 0.0) {
@@ -153,8 +154,8 @@ MatrixXd factor_covariance(const EvidenceFit& fit, Index base, const std::vector
                            const TableRows& rows, double usual) {
   const Index known = fit.factors.size();
   const MatrixXd inverse = fit.information.solve(MatrixXd::Identity(fit.whitened.cols(), fit.whitened.cols()));
-  // What the model of a reversal lacks is alike over the whole stroke after it: strokes are what is drawn at random
-  // (cluster-robust; Liang and Zeger, Biometrika 73 (1986) 13-22). Never less than the noise alone says.
+  // Model errors of a reversal are correlated over the whole stroke after it, so strokes are the clusters
+  // (cluster-robust; Liang and Zeger, Biometrika 73 (1986) 13-22). Never less than the uncertainty due to noise alone.
   MatrixXd scores(0, fit.whitened.cols());
   for (Index k = 0; k < rows.size(); ++k) {
     const bool begins = k == 0 || rows.way(k) != rows.way(k - 1) ||
@@ -212,7 +213,7 @@ TableEffect table_effect(const TableTerm& term, const EvidenceFit& fit, const Ma
     effect.entry.parameters = {
         {"cosine", sign * factors(0)}, {"sine", sign * factors(1)}, {"period", 1e3 * to_unit * term.shape[0]}};
   } else {
-    // What is alike over the whole travel has no place.
+    // An effect that is equal over the whole travel has no place.
     constexpr std::string_view kWhere =
         ": of the screw, of its bearing or of the scale's own mount; one scale does not tell them apart, a thermometer "
         "on each does";

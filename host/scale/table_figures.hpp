@@ -1,4 +1,4 @@
-// What the table does against the motor, as figures of a page.
+// Figures of the table's motion relative to the motor.
 #pragma once
 
 #include "host/report/report.hpp"
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// x2 - x over travel, force and time by direction, what was found in it, and the pitch curve. Nothing of an empty
+/// x2 - x over travel, force and time by direction, the effects found in it, and the pitch curve. Empty for an empty
 /// study.
 void add_table_figures(const TableStudy& study, Report& report);
 

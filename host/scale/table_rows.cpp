@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// More rows say nothing new of some dozen factors.
+/// More rows add no information on some dozen factors.
 constexpr std::size_t kMostRows = 2400;
 
 double mm_of(const Record& record) { return record.kind == sim::DriveKind::linear ? 1e3 : 1.0; }
@@ -33,8 +33,8 @@ struct MotorTravel {
   double deviation = 0.0;  ///< mm RMS
 };
 
-/// Between the encoder's counts, and never off them by more than half a count: a contact that is simulated behind a
-/// staircase rings with every count. Where record or model say nothing of the force, the counts themselves.
+/// Interpolated between the encoder's counts, with a deviation of at most half a count, because a simulated contact
+/// would oscillate at every step of the counts. Without a force in record or model, the counts themselves.
 MotorTravel travel_between_counts(const Record& record, const sim::DriveDescription& model, double step) {
   MotorTravel travel{record.x, step / std::sqrt(12.0)};
   if (model.find("inertia") != nullptr && model.data.effort_per_volt() > 0.0 &&

@@ -1,4 +1,4 @@
-// Rows of what the table does against the motor: x2 - x, and the motion and force meanwhile.
+// Rows of the table's motion relative to the motor: x2 - x, with motion and force.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,14 +18,14 @@ struct TableRecord {
   std::vector<double> effort;      ///< of the motor, Nm or N
   Eigen::Index first_row = 0, rows = 0;
   std::size_t stride = 1;      ///< samples of which one row is the mean
-  std::vector<double> motor;   ///< mm, x between its counts
-  std::vector<double> pusher;  ///< mm: where the motor is, without what is known of its encoder's error
+  std::vector<double> motor;   ///< mm, x interpolated between its counts
+  std::vector<double> pusher;  ///< mm: true position of the motor, corrected for the known error of its encoder
 
-  /// Means over each row's samples of a value at every sample.
+  /// Means of a sampled value over each row's samples.
   void put_means(const std::vector<double>& samples, Eigen::VectorXd& of_all_rows) const;
 };
 
-/// All records after one another; a row is the mean of a few samples.
+/// All records one after the other; a row is the mean of a few samples.
 struct TableRows {
   std::vector<TableRecord> records;
   Eigen::VectorXd y;       ///< x2 - x, um, about the first row of each record
@@ -37,22 +37,22 @@ struct TableRows {
   Eigen::VectorXd since;   ///< travel since the last reversal, mm
   Eigen::VectorXd way;     ///< direction of the last motion, -1 or 1
   std::vector<RowRun> runs;
-  double step_um = 0.0;   ///< of both sensors together: the motor's as far as its smoothed travel is in doubt
-  double noise_um = 0.0;  ///< of these steps in one row
+  double step_um = 0.0;   ///< of both sensors together; of the motor's only the uncertainty of its smoothed travel
+  double noise_um = 0.0;  ///< caused by these steps in one row
   double late_s = 0.0;    ///< by which the table is known to be read after the motor
 
   Eigen::Index size() const { return y.size(); }
-  /// Speed and acceleration anew, after the pusher has changed.
+  /// Recomputes speed and acceleration after a change of the pusher.
   void differentiate_pusher();
   bool has_effort() const { return effort.size() > 0; }
-  /// Means over each row's samples of what `of` gives for every sample of a record.
+  /// Means over each row's samples of the values of `of` for every sample of a record.
   Eigen::VectorXd means(const std::function<std::vector<double>(const TableRecord&)>& of) const;
 };
 
 double rms(const Eigen::VectorXd& values);
 
-/// Of those records that have both positions; empty where none has. Throws Failure(bad_input) where the drive's
-/// constants are missing.
+/// Rows of the records that have both positions; empty if none has. Throws Failure(bad_input) if the drive's constants
+/// are missing.
 TableRows table_rows(const std::vector<const Record*>& records, const sim::DriveDescription& model);
 
 }  // namespace host

@@ -1,5 +1,4 @@
-// What a sensor on the table shows against the motor's encoder: which effects stand between them, by evidence alone,
-// and how large they are.
+// Effects between the motor's encoder and a sensor on the table, found by evidence alone, and their sizes.
 #pragma once
 
 #include <array>
@@ -25,14 +24,14 @@ struct TablePoint {
 
 /// One effect that is certain.
 struct TableEffect {
-  std::vector<std::string> group;    ///< one kind, or those that these rows do not tell apart, most probable first
+  std::vector<std::string> group;    ///< one kind, or several that these rows do not separate, most probable first
   std::string place;                 ///< of a cyclic error: "motor", "scale", "scale or motor"
   double probability = 0.0;          ///< of the group
-  double before = 0.0, after = 0.0;  ///< RMS without it and with all, um
+  double before = 0.0, after = 0.0;  ///< RMS without it and with all effects, um
   bool worth_naming = false;         ///< by the losses of infer/posterior.hpp
   std::vector<TableSize> sizes;
   std::vector<TablePoint> curve;  ///< of a pitch error
-  sim::EffectEntry entry;         ///< as a model holds it; without parameters where it cannot
+  sim::EffectEntry entry;         ///< as in a model; without parameters if a model cannot contain it
   std::string words;
 
   const std::string& kind() const { return group.front(); }
@@ -42,23 +41,23 @@ struct TableStudy {
   TableRows rows;
   double before_um = 0.0, left_um = 0.0;  ///< RMS: offsets and delay alone; with all effects
   double noise_um = 0.0;
-  double delay_s = 0.0;                                     ///< by which the table is read after the motor
+  double delay_s = 0.0;                                     ///< by which the table's sensor is read after the motor's
   std::vector<TableEffect> effects;                         ///< in the order in which they were found
   std::vector<std::pair<std::string, double>> absent_odds;  ///< probability of each kind that was not found
   Eigen::VectorXd left;                                     ///< of every row, um
 
   bool empty() const { return rows.size() == 0; }
   const TableEffect* find(std::string_view kind) const;
-  /// That this kind is missing from the model, 0..1; nothing where these records cannot say.
+  /// Probability that this kind is missing from the model, 0..1; empty if these records cannot show it.
   std::optional<double> probability(std::string_view kind) const;
 };
 
-/// Kinds that the model has already stand as they are. Empty where no record has a second position, or the axis does
-/// not move both ways. Evidence needs no held-back records: every command sees the same rows. Throws Failure(bad_input)
-/// where the drive's constants are missing.
+/// Kinds that the model already has are unchanged. Empty if no record has a second position, or the axis does not move
+/// in both directions. Evidence needs no held-back records, so every command uses the same rows. Throws
+/// Failure(bad_input) if the drive's constants are missing.
 TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& records);
 
-/// "backlash 12.3 um (95 %: 12.0 to 12.6); …": sentences; what they leave.
+/// "backlash 12.3 um (95 %: 12.0 to 12.6); …": sentences, with the residual.
 std::string table_words(const TableStudy& study);
 
 /// {"rms_um": …, "noise_um", "left_um", "found": [{"kinds", "place", "probability", "sizes": {…}, "curve": […]}]}

@@ -94,7 +94,7 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
                 {}};
   if (diagnosis.verdict.probability_nothing + diagnosis.verdict.probability_other <= 0.0 &&
       diagnosis.candidates.empty())
-    return answer;  // too short to be searched: nothing was forecast
+    return answer;  // too short for a search: no forecasts
   bool among = false;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
     const bool is_it = !truth.alien && std::ranges::is_permutation(candidate.kinds, truth.effects);
@@ -109,7 +109,7 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
 
 namespace {
 
-/// Diagnoses what passes the gate; what does not is no answer either.
+/// Diagnoses records that the gate accepts; otherwise there is no answer.
 Answer ask(const std::string& name, const std::string& group, const Truth& truth, const sim::DriveDescription& model,
            std::vector<Record> train, std::vector<Record> validate, const ShareDone& progress,
            const std::vector<std::string>& absent = {}) {
@@ -159,7 +159,7 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
     return std::ranges::find(along, answer.verdict.coordinate) != along.end();
   };
   result.right_coordinate = answer.outcome == Outcome::group || std::ranges::any_of(truth.effects, goes_with);
-  // Over what the verdict named, as a reader of it would try, and over whatever judges best.
+  // Over the coordinate that the verdict names, as its reader would try, and over the best one in validation.
   for (const std::string& over : {std::string(), answer.verdict.coordinate}) {
     if (!over.empty() && std::ranges::find(sim::kCurveCoordinates, over) == std::end(sim::kCurveCoordinates)) continue;
     try {

@@ -12,16 +12,16 @@
 
 namespace host {
 
-/// Right: exactly the truth, or no claim where nothing is hidden or nothing that a catalogue knows. Group: an ambiguous
-/// answer that contains it. Partly: some of several effects, and nothing else. Wrong: something that is not there.
-/// Missed: no claim where there was something to find.
+/// Right: exactly the truth, or no claim if nothing is hidden or the hidden effect is in no catalogue. Group: an
+/// ambiguous answer that contains the truth. Partly: some of several effects, and nothing else. Wrong: an effect that
+/// is not there. Missed: no claim although there was an effect to find.
 enum class Outcome { right, group, partly, wrong, missed };
 
 std::string_view outcome_name(Outcome outcome);
 
 Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict);
 
-/// Something said to be probable, and whether it is so.
+/// A stated probability, and whether it came true.
 using Forecast = std::pair<double, bool>;
 
 struct Answer {
@@ -31,14 +31,14 @@ struct Answer {
   double before = 0.0, after = 0.0;  ///< combined, on validation data
   double seconds = 0.0;
   Outcome outcome = Outcome::missed;
-  std::vector<Forecast> forecasts;  ///< every candidate, nothing, something else
+  std::vector<Forecast> forecasts;  ///< for every candidate, "nothing" and "something else"
 
   /// Part of the squared error above the noise floor that was removed; 0 if there was none.
   double explained() const;
   bool gives_all_clear() const { return verdict.status == Status::adequate || verdict.status == Status::parameters; }
 };
 
-/// Holds a diagnosis against the truth.
+/// Compares a diagnosis with the truth.
 Answer answer_of(const std::string& name, const std::string& group, const Truth& truth, const Diagnosis& diagnosis,
                  double seconds);
 
@@ -50,7 +50,7 @@ struct LeftOut {
   bool right_coordinate = false;  ///< the coordinate of the hidden effect was named, or a related effect
   Answer answer;       ///< right: no name. Group: related effects only. Wrong: any other name, or an all-clear
   std::string over;    ///< coordinate of the best free curve in validation; empty if none lowers the error
-  double curve = 0.0;  ///< part of the explainable squared error that it takes, 0..1
+  double curve = 0.0;  ///< part of the explainable squared error that it removes, 0..1
 };
 
 /// Runs a whole case with its effects declared absent.
@@ -59,7 +59,8 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress = {});
 /// Diagnoses a simulated drive in which nothing is hidden.
 Answer run_null(std::uint64_t seed, const std::string& name);
 
-/// The larger error over floor of a whole case, both sets, after a re-fit of the base: how much there is to find.
+/// The larger error over floor of a whole case, both sets, after a refit of the base: it shows how much there is to
+/// find.
 double error_of_whole_case(const std::filesystem::path& folder);
 
 /// Forecasts in ten bins of probability.
@@ -75,7 +76,7 @@ struct Reliability {
 
 Reliability reliability_of(const std::vector<Forecast>& forecasts);
 
-/// The most probable of each answer.
+/// The most probable forecast of each answer.
 std::vector<Forecast> top_forecasts(const std::vector<Answer>& answers);
 std::vector<Forecast> all_forecasts(const std::vector<Answer>& answers);
 

@@ -80,7 +80,7 @@ std::string other_direction(std::string id) {
   return id;
 }
 
-/// Directions change places; values of the backward one carry a minus.
+/// Exchanges the directions; values of the backward one are negative.
 void mirror(Question& question) {
   for (sim::EffectEntry& entry : question.model.effects) {
     const std::map<std::string, double> original = entry.parameters;

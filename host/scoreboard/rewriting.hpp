@@ -1,4 +1,4 @@
-// Equivalent forms of the same measurements: a change that leaves the physics must not change the diagnosis.
+// Equivalent forms of the same measurements: a change that does not concern the physics must not change the diagnosis.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,8 @@ Question read_question(const Trial& trial);
 struct Rewriting {
   std::string_view name;  ///< "volt x 100"
   std::function<void(Question&)> apply;
-  /// A fitted base parameter as it should be found now: its id and value in the original. Empty: unchanged.
+  /// Expected value of a fitted base parameter after rewriting, from its id and value in the original. Empty:
+  /// unchanged.
   std::function<double(const Question&, std::string_view id, double)> expected = {};
 };
 
@@ -35,7 +36,7 @@ struct Rewriting {
 /// and given twice.
 std::span<const Rewriting> rewritings();
 
-/// How a rewritten question was answered, against the original.
+/// Answer to a rewritten question compared with the original.
 struct Invariance {
   bool same_verdict = false;        ///< status and effects
   double worst_parameter = 0.0;     ///< of a fitted base parameter: 1 where both 95 % intervals just touch

@@ -1,4 +1,4 @@
-// A scoreboard: which trials to run, and how many of each kind were answered right.
+// A scoreboard: selects trials, and counts how many of each kind were answered right.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ inline constexpr double kMostOfIt = 0.8;
 struct ScoreboardOptions {
   std::string folder;      ///< holds cases at any depth
   bool cuts = false;       ///< also pieces of each case
-  std::size_t sample = 0;  ///< only so many cases and so many cuts, drawn at random; 0: all
+  std::size_t sample = 0;  ///< only this many cases and cuts, drawn at random; 0: all
   std::uint64_t seed = 1;  ///< of the sample and of the simulated drives
-  std::size_t nulls = 0;   ///< also so many simulated drives without a hidden effect
+  std::size_t nulls = 0;   ///< also this many simulated drives without a hidden effect
 };
 
 /// Whole cases first, then their pieces.
@@ -43,7 +43,7 @@ struct AnswerCounts {
   std::size_t count(Outcome outcome) const;
 };
 
-/// By what a case hides.
+/// Grouped by the hidden effects of the cases.
 struct AnswerSummaries {
   AnswerCounts none, single, pairs, alien;
 

@@ -1,5 +1,5 @@
-// Simulated measurements of a drive in which nothing is hidden, each with a motion, noise and parameters of its own: a
-// diagnosis may claim nothing from them.
+// Simulated measurements of drives in which nothing is hidden, each with its own motion, noise and parameters: a
+// diagnosis must not claim anything from them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct SimulatedNull {
   std::vector<Record> validate;  ///< empty for every other one
 };
 
-/// The same numbers give the same measurements.
+/// Equal arguments give equal measurements.
 SimulatedNull simulated_null(std::uint64_t seed);
 
 }  // namespace host

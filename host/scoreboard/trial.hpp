@@ -1,4 +1,5 @@
-// Trials of the diagnosis on records with a known truth: whole cases, and pieces of them such as a new user has first.
+// Trials of the diagnosis on records with a known truth: whole cases, and pieces of them, such as a new user's first
+// records.
 #pragma once
 
 #include <cmath>
@@ -14,7 +15,7 @@ namespace host {
 /// Hidden effects of a case.
 struct Truth {
   std::vector<std::string> effects;  ///< kinds; empty where nothing is hidden
-  bool alien = false;                ///< something is hidden that no catalogue knows
+  bool alien = false;                ///< the hidden effect is in no catalogue
 };
 
 /// Folders at any depth that hold a case (model.toml, train-*.csv, validate.csv, truth.json), in the order of their
@@ -32,9 +33,9 @@ struct Piece {
 
 struct Trial {
   std::string name;
-  std::string group;  ///< the line of a table that it counts in: "one record", "2 s"
+  std::string group;  ///< the row of the table in which it is counted: "one record", "2 s"
   std::filesystem::path folder;
-  std::vector<Piece> train, validate;  ///< no `validate`: part of the training data is kept back
+  std::vector<Piece> train, validate;  ///< without `validate`, a part of the training data is held back
 };
 
 /// All training records and the validation record.

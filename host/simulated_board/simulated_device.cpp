@@ -45,7 +45,7 @@ hal::pc::SimulatedFlash flashed_images(hal::pc::SimulatedFlash flash) {
   return flash;
 }
 
-/// What the boot code makes of it; the header of the image that runs.
+/// Runs the boot code; returns the header of the running image.
 firmware::ImageHeader boot(hal::pc::SimulatedFlash& flash, const std::optional<hal::pc::SimulatedFlash>& before) {
   flash = before ? *before : flashed_images(flash);
   firmware::BootChoice(flash).prepare();

@@ -1,5 +1,5 @@
-// A simulated board that runs the firmware's application, and keeps its parameters and fault log in a file; images of
-// its program last as long as it does.
+// A simulated board that runs the firmware's application. It keeps its parameters and fault log in a file, but images
+// of its program only while it exists.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,21 @@
 
 namespace host {
 
-/// A drive that is plugged in, with the switches of its axis.
+/// A connected drive, with the switches of its axis.
 struct SimulatedDrive {
   sim::DriveDescription drive;
   hal::pc::AxisWiring wiring{};
-  std::shared_ptr<sim::ForeignMotion> motion{};  ///< moves in place of the drive's effects, where there is one
+  std::shared_ptr<sim::ForeignMotion> motion{};  ///< replaces the drive's effects, if set
 };
 
 struct SimulatedDeviceOptions {
   std::vector<SimulatedDrive> drives;  ///< of axis x, y, …; as many as the board has axes, 1 to hal::kMostAxes
-  std::string flash_file;              ///< empty: the board forgets
+  std::string flash_file;              ///< empty: they are not kept
   std::uint64_t seed = 1;              ///< of the sensors' noise
-  std::vector<hal::pc::SimulatedSurface> surfaces{};  ///< that a touch probe meets
+  std::vector<hal::pc::SimulatedSurface> surfaces{};  ///< that a touch probe can touch
 };
 
-/// The board's end of any way to a host; satisfies hal::UsbHid.
+/// The board's end of any link to a host; satisfies hal::UsbHid.
 class UsbEnd {
  public:
   virtual ~UsbEnd() = default;
@@ -50,17 +50,17 @@ class SimulatedProgram {
   virtual const hal::pc::SimulatedFlash& images() = 0;
 };
 
-/// One thread's: program, control periods and world take turns.
+/// For one thread: program, control periods and environment alternate.
 class SimulatedDevice {
  public:
-  /// Powers up. Throws Failure(bad_input) for drives that the simulation cannot build, more or fewer of them than a
-  /// board can have axes, or a file that is no flash.
+  /// Powers up. Throws Failure(bad_input) for drives that the simulation cannot build, for a number of drives that is
+  /// no possible number of axes, or for a file that does not contain a flash.
   explicit SimulatedDevice(SimulatedDeviceOptions options);
 
-  /// A control period, and the world's time for it. Returns that time, µs.
+  /// A control period of the program and the environment. Returns its duration, µs.
   std::uint32_t run_control_period() { return program_->run_control_period(); }
 
-  /// A round of the background, over any way to a host.
+  /// A round of the background, with any link to a host.
   template <hal::UsbHid Usb>
   void poll(Usb& usb) {
     struct End : UsbEnd {
@@ -76,7 +76,7 @@ class SimulatedDevice {
 
   hal::pc::SimulatedUsb& usb() { return program_->usb(); }
 
-  /// The program asked for a restart; power_up() does it. A cable is unplugged by it.
+  /// The program has requested a restart, which power_up() carries out. It also disconnects the cable.
   bool wants_restart() const { return program_->wants_restart(); }
   void power_up();
 

@@ -1,4 +1,4 @@
-// Images for the simulated board, whose program is this one whatever they hold: to try updates with.
+// Images for the simulated board, to try updates. Its program is always this one, whatever the image contains.
 #pragma once
 
 #include <cstddef>

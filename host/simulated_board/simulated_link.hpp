@@ -1,4 +1,5 @@
-// A simulated board within this process. Its time passes only while somebody waits for it, as fast as the computer can.
+// A simulated board within this process. Its time passes only while a caller waits for it, as fast as the computer can
+// simulate.
 #pragma once
 
 #include "host/link/report_link.hpp"

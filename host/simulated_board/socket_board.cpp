@@ -21,7 +21,7 @@ using std::chrono::steady_clock;
 /// A program at the other end. As with hidraw, everyone sees all that the board sends.
 struct Host {
   OwnedDescriptor socket;
-  std::optional<hal::HidReport> waiting;  ///< that it had no room for yet
+  std::optional<hal::HidReport> waiting;  ///< for which it had no room yet
 };
 
 class SocketBoard {
@@ -81,7 +81,8 @@ class SocketBoard {
     deliver();
   }
 
-  /// What the board has sent goes on its way, as long as somebody takes it: who alone holds the others up misses it.
+  /// Passes on the board's reports while at least one host takes them; a host that alone delays the others misses
+  /// reports.
   void deliver() {
     for (std::size_t i = hosts_.size(); i-- > 0;)
       if (hosts_[i].waiting && !is_sent(i, *hosts_[i].waiting) && hosts_.size() == 1) return;
@@ -93,7 +94,7 @@ class SocketBoard {
     }
   }
 
-  /// False where it has to wait, or the host has gone.
+  /// False if it has to wait, or if the host is gone.
   bool is_sent(std::size_t index, const hal::HidReport& report) {
     Host& host = hosts_[index];
     if (::send(host.socket.get(), report.data(), report.size(), MSG_NOSIGNAL) >= 0) {

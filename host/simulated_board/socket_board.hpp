@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Serves one host after the other at `listener` (listen_at_socket) until `stop`: a cable that is plugged in anew by
+/// Serves one host after the other at `listener` (listen_at_socket) until `stop`: a cable that is connected again by
 /// each. Control periods keep real time; where the computer cannot, simulated time falls behind.
 void serve_simulated_device(SimulatedDevice& device, const OwnedDescriptor& listener, const std::atomic<bool>& stop);
 

@@ -1,4 +1,4 @@
-// The switches of a simulated axis, where nobody says otherwise.
+// The default switches of a simulated axis.
 #pragma once
 
 #include "firmware/core/motion/homing.hpp"
@@ -6,13 +6,13 @@
 
 namespace host {
 
-/// A home switch at `home` mm (m) from where the axis is at power-up and, on a shaft, an index pulse each turn.
+/// A home switch at `home` mm (m) from the axis's position at power-up and, on a shaft, an index pulse per turn.
 hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home);
 
-/// The drive with a home switch 25 mm (0.025 m) from where it is at power-up.
+/// The drive with a home switch 25 mm (0.025 m) from its position at power-up.
 SimulatedDrive usual_axis(const sim::DriveDescription& drive);
 
-/// What finds home on such an axis, and the place that is found, mm (m) from where the axis is at power-up.
+/// The homing mode of such an axis, and the home position, mm (m) from its position at power-up.
 struct UsualHome {
   firmware::HomingMode mode = firmware::HomingMode::none;
   double position = 0.0;

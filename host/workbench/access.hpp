@@ -1,4 +1,4 @@
-// Access control of the workbench: only pages that it served itself, on this computer, to a holder of its token.
+// Access control of the workbench: accepts only requests of its own pages, on this computer, with its token.
 #pragma once
 
 #include <string>
@@ -21,9 +21,9 @@ class Access {
   std::string cookie() const;
 
   bool is_own_host(std::string_view host) const;
-  /// No origin is that of a program which is no browser; it needs the cookie all the same.
+  /// A request without origin comes from a program that is not a browser; it needs the cookie as well.
   bool is_own_origin(std::string_view origin) const;
-  bool is_token(std::string_view text) const;  ///< takes as long for a wrong one
+  bool is_token(std::string_view text) const;  ///< takes equally long for a wrong token
   bool has_cookie(std::string_view cookies) const;
 
  private:

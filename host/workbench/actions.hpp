@@ -17,8 +17,8 @@ namespace host::workbench {
 
 struct Comparison {
   nlohmann::json document;  ///< of `axistool compare --json`
-  std::string report;       ///< its page; empty where no effort was recorded
-  std::string text;         ///< in place of the page
+  std::string report;       ///< its page; empty if no command, torque or force was recorded
+  std::string text;         ///< instead of the page
   std::string traces;       ///< record whose traces the page draws
 };
 
@@ -28,16 +28,16 @@ std::vector<ComparedModel> compared_models(const Folder& folder, const Request& 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
 
-/// The comparison of the model with one that has other values, of a request to adjust: written to kTrial, nothing else.
-/// Throws as the command does.
+/// Comparison of the model with one that has the values of a request to adjust, which is written to kTrial only. Throws
+/// as the command does.
 Comparison compare_trial(const Folder& folder, const Request& request);
 inline constexpr const char* kTrial = "trial.toml";
 
-/// Of a quick diagnosis: "document", its --json, and "report", its page. Throws as the command does.
+/// Result of a quick diagnosis: "document", its --json, and "report", its page. Throws as the command does.
 nlohmann::json look_first(const Folder& folder, const Request& request);
 
-/// The plot of an effect in the gallery, as report.js draws it, and how far it stands out. Throws Failure(usage) for an
-/// unknown kind.
+/// The plot of an effect in the gallery, for report.js, and the size of its residual relative to a run without it.
+/// Throws Failure(usage) for an unknown kind.
 nlohmann::json gallery_picture(const std::string& kind);
 
 /// Identifies, diagnoses, adds, adjusts or improves, writes the outputs, and returns the document of the command's
@@ -45,8 +45,8 @@ nlohmann::json gallery_picture(const std::string& kind);
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress);
 
-/// Leaves a stretch out: what is before and after it as records of their own, by `axistool cut`; their names and the
-/// commands. Pieces without enough rows are not written. Throws Failure(refused) where nothing is left.
+/// Removes a time range: writes the parts before and after it as separate records, by `axistool cut`, and returns their
+/// names and the commands. Parts without enough rows are not written. Throws Failure(refused) if nothing remains.
 nlohmann::json cut_out(const Folder& folder, const CutRequest& request);
 
 /// Result of `axistool open` for logs: { "document": of its --json, "command" }. If no question is open, or uncertain

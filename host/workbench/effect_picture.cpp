@@ -25,7 +25,7 @@ namespace {
 constexpr double kMissing = 0.2;      ///< relative, of a parameter of inertia and friction
 constexpr double kScale_mm = 0.0001;  ///< resolution of the scale on the table
 
-/// Values other than the catalogue's examples, so that the effect acts within the run, or shows on it at first sight.
+/// Values that differ from the catalogue's examples, so that the effect acts within the run, or is clearly visible.
 struct OtherValue {
   std::string_view kind, id;
   double value;

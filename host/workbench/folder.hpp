@@ -30,11 +30,11 @@ class Folder {
 
   const std::filesystem::path& root() const { return root_; }
 
-  /// Models, records and logs, sorted; at most some thousand. What lies outside is left out, links to it too.
+  /// Models, records and logs, sorted; at most some thousand. Files outside are left out, and so are links to them.
   std::vector<FolderFile> files() const;
 
-  /// `name`, where it is a file of the folder. Throws Failure: usage for any other name, permission where links
-  /// lead out of the folder, bad_input where there is no such file.
+  /// Returns `name` if it is a file of the folder. Throws Failure: usage for an invalid name, permission if links lead
+  /// out of the folder, bad_input if there is no such file.
   std::string existing(const std::string& name) const;
 
   /// An unused name: "x+cogging.toml", "x+cogging-2.toml", ...
@@ -48,7 +48,7 @@ class Folder {
   std::filesystem::path root_;
 };
 
-/// A file on its way into the folder: under its name, or a free one like it, once it is whole.
+/// A file that is being uploaded to the folder: it gets its name, or a similar free one, once it is complete.
 class Upload {
  public:
   /// Throws Failure(usage) for a name with a folder or of a kind that is not read here.
@@ -57,7 +57,7 @@ class Upload {
   Upload& operator=(const Upload&) = delete;
   ~Upload();
 
-  /// False where that would be more than `kLogSize`, or the disk is full.
+  /// False if the file would exceed `kLogSize`, or if the disk is full.
   bool append(const char* data, std::size_t size);
 
   std::string finish();

@@ -1,6 +1,5 @@
-// Long work with progress and cancel: searches one after the other, and beside them fits one after the other.
-// Everything about a job is in the folder: its state in workbench/0007.job.json, its results beside that, so that a
-// reload, another page or a crash loses nothing.
+// Long tasks with progress and cancel: one search at a time and, in parallel, one fit at a time. A job's state is in
+// workbench/0007.job.json and its results are beside that file, so a reload, another page or a crash loses nothing.
 #pragma once
 
 #include <atomic>
@@ -29,7 +28,7 @@ class Jobs {
   /// Cancels the running job and waits for its end.
   ~Jobs();
 
-  /// Throws Failure(refused) where too many wait.
+  /// Throws Failure(refused) if too many jobs wait.
   int submit(const Request& request);
 
   /// "axis-jobs/1": states without results, latest first.

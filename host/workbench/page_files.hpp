@@ -1,4 +1,4 @@
-// The page's own files, which the program carries within itself.
+// The page's own files, which are embedded in the program.
 #pragma once
 
 #include <string_view>

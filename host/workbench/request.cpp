@@ -47,7 +47,7 @@ std::string text_of(const nlohmann::json& object, const std::string& field) {
   return found->get<std::string>();
 }
 
-/// Lower-case words of the catalogue and of the log's faults.
+/// Accepts a lower-case word, such as the name of an effect or of a fault of the log.
 std::string word_of(const std::string& text, const std::string& field) {
   constexpr std::size_t kLongestWord = 60;
   const bool is_word = text.size() <= kLongestWord &&
@@ -56,7 +56,7 @@ std::string word_of(const std::string& text, const std::string& field) {
   return text;
 }
 
-/// "cogging.cosine_72=0.2"
+/// Accepts a value such as "cogging.cosine_72=0.2".
 std::string value_of(const std::string& text, const std::string& field) {
   constexpr std::size_t kLongestValue = 120;
   const std::size_t equals = text.find('=');

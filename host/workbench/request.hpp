@@ -33,7 +33,7 @@ inline constexpr std::size_t kLongestRequest = 65'536;
 /// missing.
 Request parse_request(std::string_view text);
 
-/// { "record": NAME, "stretch": [FROM, TO] }: what is left out of a record.
+/// { "record": NAME, "stretch": [FROM, TO] }: the time range to remove from a record.
 struct CutRequest {
   std::string record;
   TimeSpan stretch;
@@ -47,13 +47,13 @@ struct OpenRequest {
 };
 OpenRequest parse_open(std::string_view text);
 
-/// What is chosen on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. The
-/// same again, checked.
+/// The selection on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. Returns
+/// the same, checked.
 nlohmann::json parse_choice(std::string_view text);
 
 nlohmann::json to_json(const Request& request);
 
-/// Where the results go. Empty names are left out.
+/// Files for the results. Empty names are left out.
 struct Outputs {
   std::string model, json, report;
 };

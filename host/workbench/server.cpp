@@ -43,7 +43,7 @@ constexpr std::size_t kThreads = 64;
 constexpr time_t kPatience_s = 5;
 constexpr std::chrono::seconds kLongestBody(10), kLongestUpload(600);
 
-/// Nothing but the page's own files is loaded, and no script stands in what it shows.
+/// Only the page's own files are loaded, and displayed content cannot contain scripts.
 constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src "
     "'self'; "

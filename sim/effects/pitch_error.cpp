@@ -28,7 +28,7 @@ const EffectInfo pitch_error{
     .parameters = {{.id = "lead_error",
                     .rotary_key = "lead_error_um_per_m",
                     .linear_key = "lead_error_um_per_m",
-                    .doc = "d: what the table travels too far",
+                    .doc = "d: excess travel of the table",
                     .lower = -5000.0,
                     .upper = 5000.0,
                     .starts = {10.0},

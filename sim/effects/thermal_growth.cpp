@@ -24,7 +24,7 @@ const EffectInfo thermal_growth{
     .parameters = {{.id = "growth",
                     .rotary_key = "growth_mm",
                     .linear_key = "growth_m",
-                    .doc = "g: what the table has moved when warm",
+                    .doc = "g: displacement of the table when warm",
                     .lower = -1.0,
                     .upper = 1.0,
                     .scale = Scale::millimetre,
@@ -32,18 +32,20 @@ const EffectInfo thermal_growth{
                    {.id = "time_constant",
                     .rotary_key = "time_constant_s",
                     .linear_key = "time_constant_s",
-                    .doc = "tau of warming up",
+                    .doc = "time constant of warm-up, tau",
                     .lower = 0.5,
                     .upper = 1e5,
                     .scale = Scale::duration,
                     .starts = {1.0}},
-                   cold_start_parameter("t0: when nothing had grown yet, on the clock of the records; absent: 0")},
-    .shows = "Only a scale on the table sees it: x2 - x moves slowly with the time, alike in both directions",
+                   cold_start_parameter(
+                       "t0: time at which the growth is zero, on the clock of the records; default 0")},
+    .shows = "Only a scale on the table shows it: x2 - x changes slowly with time, equally in both directions",
     .along = {"time", "temperature"},
     .confused_with = {"pitch_error", "backlash"},
     .separate_by =
         "Repeat one cycle for an hour with a scale on the table, stop, repeat; log the temperature of nut and bearing",
-    .origin = "Screw and nut warming up by friction: 11 um a metre and kelvin of steel between fixed bearing and nut",
+    .origin =
+        "Friction warms screw and nut: the steel between fixed bearing and nut grows by 11 um per metre and kelvin",
     .remedy = "Close the position loop by the scale; warm-up cycle; cooled or pretensioned screw",
     .install = install_thermal_growth,
 };

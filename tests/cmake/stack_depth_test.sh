@@ -1,5 +1,5 @@
 #!/bin/sh
-# The stack check adds frames up along calls and through pointers, and finds what it cannot add up.
+# The stack check sums frames along calls, also calls through pointers, and reports what it cannot sum.
 set -eu
 check=$(dirname "$0")/../../cmake/checks/stack_depth.sh
 command -v arm-none-eabi-gcc >/dev/null || { echo "skipped: arm-none-eabi-gcc is not installed"; exit 77; }

@@ -38,7 +38,7 @@ struct PaperLoop {
   }
 
   double travel_mm() const { return plant.truth().x; }
-  /// Where the reference is, as the encoder's count would read it: the counter rounds down, hence half a count.
+  /// Position of the reference, as in the encoder's counts: the counter rounds down, hence half a count.
   double reference_mm() const {
     return static_cast<double>(firmware::counts_from<double>(0, axis.telemetry().reference)) *
            firmware_test::kEncoderResolution_mm;
@@ -203,8 +203,7 @@ ContourErrors run_circle(bool friction_feedforward, bool disturbance_cancellatio
 TEST(Circle, FrictionFeedforwardBringsTheContourErrorDownAsThePaperReports) {
   const ContourErrors without = run_circle(false, false);
   const ContourErrors with = run_circle(true, false);
-  // Without compensation 17-25 um (the paper measured 20) and a standing error; with it 4 um where the model is the
-  // truth.
+  // Without compensation 17-25 um (the paper measured 20) and a standing error; with it 4 um if the model is exact.
   EXPECT_GT(without.worst_mm, 0.017);
   EXPECT_LT(without.worst_mm, 0.025);
   EXPECT_GT(without.standing_mm, 0.01);
@@ -221,8 +220,7 @@ TEST(Circle, DisturbanceCancellationHelpsAloneAndRemovesTheStandingError) {
   EXPECT_LT(with_both.worst_mm, 0.5 * alone.worst_mm) << "the estimate alone comes too late at reversals";
 }
 
-/// Everything the converter was given during a jog and a move, with every switch on and an output limit that is
-/// reached.
+/// All codes of the converter during a jog and a move, with every switch on and an output limit that is reached.
 std::vector<std::int32_t> words_until_rest(const AxisParameters<float>& parameters) {
   PaperLoop loop(kPaperX, parameters);
   std::vector<std::int32_t> words;

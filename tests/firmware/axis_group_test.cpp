@@ -10,7 +10,7 @@
 
 namespace {
 
-/// Writes down when its encoder is read and its converter written.
+/// Records when its encoder is read and its converter written.
 struct NotedAxis : firmware::boards::ValueAxis {
   std::string* notes = nullptr;
   char name = ' ';

@@ -29,10 +29,10 @@ using firmware_test::parameters_of;
 
 static_assert(hal::AxisHal<LinearAxis>);
 
-/// What one encoder count of innovation adds to the disturbance estimate: the ripple that quantisation leaves in it.
+/// Change of the disturbance estimate by one encoder count of innovation: its ripple due to quantisation.
 double count_ripple_V(const PaperAxis& axis) { return -axis.Kobs[2][0] * firmware_test::kEncoderResolution_mm; }
 
-/// Double precision and sensors so fine that nothing but the law's own arithmetic is left.
+/// Double precision and ideal sensors, so that only the arithmetic of the control law matters.
 AxisParameters<double> fine(const PaperAxis& axis) {
   AxisParameters<double> p = parameters_of<double>(axis);
   p.encoder_resolution = 1e-8;

@@ -64,7 +64,7 @@ TYPED_TEST(ControlFilter, LeavesWhatItsNumbersSay) {
   }
 }
 
-/// A controller that holds a weight must not let go of it when its loop closes.
+/// A controller that holds a weight must not drop it when its loop closes.
 TYPED_TEST(ControlFilter, BeginsWithoutABump) {
   firmware::ParameterValues values = paper_values();
   set(values, "x.notch.on", 1);

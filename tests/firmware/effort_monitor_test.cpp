@@ -17,7 +17,7 @@ using firmware_test::kPaperX;
 constexpr float kVelocityPerCount =
     static_cast<float>(firmware_test::kEncoderResolution_mm / firmware_test::kLead_mm_per_rad / 0.001);
 
-/// A drive with dry friction behind an encoder, commanded in volts; what the monitor says, and when.
+/// A drive with dry friction and an encoder, commanded in volts; fault of the monitor, and its time.
 class CommandedDrive {
  public:
   double friction_V = 1.5;
@@ -120,7 +120,7 @@ TEST(EffortMonitor, OneBadReadingIsNotEnough) {
   EXPECT_EQ(drive.run(100, [](int) { return 6.0; }), AxisFault::none);
 }
 
-/// What the monitor says of a feedback command.
+/// The monitor's result for a feedback command.
 AxisFault watch_feedback(int samples, const std::function<double(int)>& feedback_V, int* at = nullptr) {
   firmware::EffortMonitor<float> monitor;
   monitor.configure(firmware_test::parameters_of<float>(kPaperX));

@@ -1,4 +1,4 @@
-// Fixed point against double precision, and against everything that could make it overflow.
+// Fixed point compared with double precision, and with all inputs that could make it overflow.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -160,7 +160,7 @@ struct Differences {
 
 void enlarge(double& most, double difference) { most = std::max(most, std::abs(difference)); }
 
-/// One period of a fixed-point axis, as somebody sees it who only watches.
+/// One period of a fixed-point axis, observed from outside.
 struct Period {
   std::int32_t tachometer_code = 0;
   firmware::AxisTelemetry<FixedPoint> seen;
@@ -248,8 +248,8 @@ Differences judge(const AxisParameters<double>& p, const std::vector<Period>& re
   return worst;
 }
 
-/// What the word may differ by, in steps of the converter: its own rounding, what the estimates' differences make
-/// through the gains, and the weight of a velocity, which zero phase rounds three times, at the top speed.
+/// Allowed difference of the code, in steps of the converter: its own rounding, the differences of the estimates times
+/// the gains, and, at the top speed, the weight of a velocity, which zero phase rounds three times.
 double most_dac_steps(const AxisParameters<double>& p, const Differences& seen) {
   constexpr double kRoundedWeight = 1.5 * 0x1p-21;
   double volts = p.Kc[0] * seen.position_counts + p.Kc[1] * seen.velocity_counts;

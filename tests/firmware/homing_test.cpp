@@ -74,7 +74,7 @@ TEST(Homing, TakesTheFirstIndexBehindTheSwitch) {
 }
 
 /// Pulses are multiples of the spacing; the switch acts at 500. Within an eighth of a turn of a pulse, on either side,
-/// the switch is refused, and the way that moves it is told.
+/// the switch is refused, and the distance to move it is reported.
 TEST(Homing, RefusesASwitchThatActsNearAPulse) {
   struct Case {
     double spacing;

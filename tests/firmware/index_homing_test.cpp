@@ -34,7 +34,7 @@ class LateIndex : public firmware::boards::ValueAxis {
   Encoder encoder_;
 };
 
-/// Where home is found, mm. The switch acts from 30 mm on, a pulse lies at 31.5 mm and each turn from there.
+/// Position of the found home, mm. The switch acts from 30 mm on; pulses are at 31.5 mm and at each further turn.
 double home_mm(int phase, bool is_late) {
   auto p = firmware_test::parameters_of<float>(kPaperX);
   p.monitors.index_spacing = kTurn;

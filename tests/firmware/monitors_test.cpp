@@ -31,7 +31,7 @@ struct Switches {
   hal::LimitState read() const { return state; }
 };
 
-/// What an axis with these monitors says after `samples` equal samples.
+/// Fault of an axis with these monitors after `samples` equal samples.
 struct Watched {
   AxisTelemetry<float> seen;
   Switches switches;

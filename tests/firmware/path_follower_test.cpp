@@ -67,7 +67,7 @@ class Followed : public testing::Test {
     ++pushed_;
     return true;
   }
-  /// The host's and the background's turn, then the control interrupt's. `most`: nodes that the host sends in all.
+  /// Runs host and background, then the control interrupt. `most`: total number of nodes from the host.
   void step(int most) {
     while (follower_.phase() < PathPhase::stopping && pushed_ < most && push_next(pushed_ + 1 == pieces())) continue;
     follower_.prepare();
@@ -145,7 +145,7 @@ TEST_F(Followed, OverrideStretchesTimeAlone) {
   EXPECT_LT(off_, 1e-3);
 }
 
-/// A host that dies in the middle: the axes stand on the path, before its last node, and slow down gently.
+/// A host that ends in the middle: the axes slow down smoothly and stand on the path, before its last node.
 TEST_F(Followed, StandsOnThePathWhenNodesFailToCome) {
   for (const int sent : {5, 40, 100, 163}) {
     open();
@@ -169,8 +169,8 @@ TEST_F(Followed, StopsOnThePathWhereItIsAsked) {
   EXPECT_LT(off_, 1e-3);
 }
 
-/// A circle as fast as its centripetal acceleration allows, as hosts plan it: what a stop takes there, by the board's
-/// own look at its geometry and not by what nodes claim. core/path/README.md states the bound.
+/// A circle as fast as its centripetal acceleration allows, as hosts plan it: its stopping distance by the headroom
+/// that the board computes from the geometry, not by the nodes' claims. core/path/README.md states the bound.
 class StopOnACircle : public Followed {
  protected:
   /// Counts along the path from the request to rest, begun where it is fastest; `u`: the centripetal share of the
@@ -210,7 +210,7 @@ TEST_F(StopOnACircle, TakesNoMoreThanIsStated) {
     }
 }
 
-/// By the worst that nodes might be, whatever they are, it was 2.5 times the way.
+/// With the smallest possible headroom, the stopping distance was 2.5 times as long.
 TEST_F(StopOnACircle, OfTheFastestKindTakesLittleMoreThanAStraightStop) {
   EXPECT_LT(way(0.96, 0.8), 1.5 * way(0.01, 0.8));
 }

@@ -1,4 +1,4 @@
-// What is made of a probe's input while a path runs.
+// Evaluation of a probe's input while a path runs.
 #include "firmware/core/path/probe_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ struct WatchedProbe {
     watch.configure(contact, stop, kSamples);
     began = watch.begin(input);
   }
-  /// So many control periods; in which one it has come, 0 in none.
+  /// Runs this many control periods; returns the one in which the state was reached, 0 for none.
   int run(int periods) {
     for (int k = 1; k <= periods; ++k)
       if (watch.has_come(input)) return k;

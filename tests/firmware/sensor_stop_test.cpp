@@ -21,13 +21,12 @@ struct Stop {
 
 class SensorStop : public testing::Test {
  protected:
-  /// Without friction: an axis that is let go coasts for ever.
+  /// Without friction: an axis without current coasts for ever.
   static firmware::AxisParameters<float> parameters() {
     return firmware_test::parameters_of<float>(firmware_test::kPaperX);
   }
 
-  /// Jogs, lets `fail` act on the axis before each of the following samples,
-  /// and looks at what becomes of it.
+  /// Jogs, applies `fail` to the axis before each of the following samples, and returns the result.
   template <typename Fail>
   static Stop stop(DrivenAxis& axis, float speed_mm_s, Fail fail) {
     EXPECT_TRUE(axis.axis.jog(speed_mm_s));
@@ -187,7 +186,7 @@ TEST_F(SensorStop, AStopWhoseTachometerFallsSilentIsLetGoBeforeTheAxisGainsSpeed
   }
 }
 
-/// Whoever drives the motor, it is not the command.
+/// The motor is driven, but not by the command.
 TEST_F(SensorStop, ADriveThatDoesNotObeyIsLetGo) {
   DrivenAxis axis(parameters());
   const Stop found = stop(axis, 100.0f, [](DrivenAxis& a, int) {
@@ -211,7 +210,7 @@ TEST_F(SensorStop, AnAxisThatRunsAwayFromASilentEncoderIsLetGo) {
   });
 }
 
-/// The stop's arithmetic by itself: what each sensor shows is put in.
+/// Only the stop's arithmetic: the test sets the readings of the sensors.
 class SensorStopAlone : public testing::Test {
  protected:
   SensorStopAlone() {
@@ -234,7 +233,7 @@ class SensorStopAlone : public testing::Test {
   float most = 0.0f;
 };
 
-/// Near rest a silent encoder looks like one that is right; at speed it does not.
+/// Near rest a dead encoder looks like a correct one; at speed it does not.
 TEST_F(SensorStopAlone, SensorsThatDivergeNearRestLeaveTheEncoder) {
   using firmware::TrustedSensor;
   constexpr auto kDiverged = AxisFault::encoder_tachometer_disagreement;

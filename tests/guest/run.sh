@@ -1,10 +1,10 @@
 #!/bin/bash
 # run.sh CACHE PROGRAM [ARGUMENT...]: runs a program of this machine as root under Debian's own kernel, in an emulated PC
 # with the modules of USB/IP, HID and CP2112. The program has udev, a shell, its own file and libraries, and those named.
-# Its output and its exit code are this script's; 77 where the guest cannot be had, with the reason.
+# Its output and its exit code are those of this script; 77, with the reason, if the guest is not available.
 # GUEST_FILES: files and folders that the guest has too, separated by colons, programs with their libraries.
-# GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: FIFOs $GUEST_LINK.in and
-# $GUEST_LINK.out, which the guest sees as /dev/vport*.
+# GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: FIFOs $GUEST_LINK.in and $GUEST_LINK.out, which the
+# guest sees as /dev/vport*.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 cache=$1
@@ -25,7 +25,7 @@ fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# All of the guest's files lie in its memory: it waits for nothing outside, so its time is its own.
+# All of the guest's files are in its memory, so it does not wait for anything outside.
 root=$work/root
 mkdir -p "$root$PWD"
 for folder in bin lib lib64 sbin; do
@@ -51,10 +51,10 @@ printf 'export ASAN_OPTIONS=%q UBSAN_OPTIONS=%q; cd %q; exec %s\n' "${ASAN_OPTIO
   cd "$root" && find . | cpio -o -H newc -R 0:0 --quiet
 } >"$work/initrd"
 
-# Without /dev/kvm: where it is itself emulated, it hangs. The guest's time goes by its instructions, a thousand million a
-# second: a loaded computer makes it slow, but makes it miss nothing. Time in which it only waits is skipped; where it
-# waits for what is outside, the clock counts. A plain processor is the quickest to emulate; so is one whose programs lie
-# at the same addresses each time, because what was translated stays of use, and whose own timer is not calibrated.
+# Without /dev/kvm, which hangs if it is itself emulated. The guest's time follows its instructions, a thousand million
+# a second: on a loaded computer it is slow, but misses no event. Time in which it only waits is skipped; if it waits
+# for something outside, the clock counts. Emulation is fastest with a plain processor, with programs at the same
+# addresses each time (translated code is reused), and without calibration of the processor's timer.
 link=()
 waiting=off
 if [ -n "${GUEST_LINK:-}" ]; then

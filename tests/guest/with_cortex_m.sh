@@ -1,9 +1,9 @@
 #!/bin/bash
-# with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: run.sh, and beside it the emulated Cortex-M board, whose reports
-# the guest sees at /dev/vport*. Beside it, because an emulator inside an emulator is too slow for 1 kHz. Its time goes by
-# its instructions, 250 million a second, and by the clock while it rests: on a loaded computer it runs slowly, but misses
-# no control period. The bridge in the guest tells it how the guest's time goes on, and it goes no further: whichever of
-# the two emulators is the slower, the other waits.
+# with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: runs run.sh and, beside it, the emulated Cortex-M board, whose
+# reports the guest sees at /dev/vport*. The board's emulator is outside the guest, because an emulator inside an
+# emulator is too slow for 1 kHz. The board's time follows its instructions, 250 million a second, and the clock while
+# it is idle: on a loaded computer the board runs slowly, but misses no control period. The bridge in the guest reports
+# the guest's time to the board, whose time does not pass it, so the faster emulator waits for the slower one.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 image=$(readlink -f "$1")

@@ -99,7 +99,7 @@ TEST_P(EveryEffect, SaysWhatItsTraceGoesWith) {
                                                   "acceleration", "current",  "rest",
                                                   "temperature",  "time",     "frequency"};
   const EffectInfo& info = *GetParam();
-  EXPECT_EQ(info.along.empty(), info.curve);  // a free curve goes with what it is asked to
+  EXPECT_EQ(info.along.empty(), info.curve);  // a free curve depends on the requested coordinate
   for (const std::string_view coordinate : info.along) EXPECT_TRUE(coordinates.contains(coordinate)) << coordinate;
 }
 
@@ -190,7 +190,7 @@ const std::map<std::string_view, Powerless> kPowerless = {
     {"coulomb_asymmetry", {{{"asymmetry", 0.0}}}},
     {"viscous_asymmetry", {{{"asymmetry", 0.0}}}},
     {"nonlinear_viscous", {{{"coefficient", 0.0}, {"exponent", 0.5}}}},
-    // Breaks away after nanometres; what is left is some milliseconds' difference at each of the reversals.
+    // Breaks away after nanometres; a difference of some milliseconds remains at each reversal.
     {"presliding", {{{"sigma0", 1e6}, {"sigma1", 20.0}}, 1e-3}},
     {"friction_lag", {{{"time", 1e-9}}, 1e-12}},
     {"dwell_stiction", {{{"gain", 0.0}, {"time_constant", 1.0}}}},

@@ -83,7 +83,8 @@ DriveState after_a_second(const sim::DriveDescription& description) {
 TEST(Step, IsTheSameOnEveryWayThroughIt) {
   const sim::DriveDescription base = sim_test::stribeck_drive();
   const DriveState expected = after_a_second(base);
-  // Each has no effect, but sends the step on another way: a richer contact, a stage before or behind the mass.
+  // Each has no effect, but selects another step function: a contact with more effects, a stage before or after the
+  // mass.
   for (const auto& [kind, parameters] : std::map<std::string, std::map<std::string, double>>{
            {"nonlinear_viscous", {{"coefficient", 0.0}, {"exponent", 1.0}}},
            {"position_dependent_friction", {{"cosine", 0.0}, {"sine", 0.0}, {"period", 1e4}}},

@@ -147,8 +147,8 @@ TEST(Plant, RefusesAnUnknownEffect) {
   EXPECT_THROW(Plant(with(quantised_drive(), "gremlins", {}), 1), std::invalid_argument);
 }
 
-/// Of a drive that drives forth, then back: what the scale reads and where the motor is meanwhile. Left alone, a motor
-/// without friction of its own would float in the gap.
+/// For a drive that moves forward, then back: readings of the scale and positions of the motor. Without a command, a
+/// motor without friction of its own would float in the gap.
 struct Ends {
   double forth, back, motor_forth, motor_back;
 };

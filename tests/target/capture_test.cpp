@@ -5,7 +5,7 @@
 
 namespace {
 
-/// Rows that were lost, taken twice, or counted from another sample than the trigger's would be out of step.
+/// Catches rows that are lost, taken twice, or counted from another sample than the trigger's.
 TEST(CaptureOnTarget, HasEverySampleOfFourChannelsAtTwentyKilohertz) {
   const std::string why = target_test::obstacle("capture-m4");
   if (!why.empty()) GTEST_SKIP() << why;

@@ -1,4 +1,4 @@
-// From named values to what the control core takes.
+// Converts named values to the parameters of the control core.
 #pragma once
 
 #include "firmware/app/parameters/parameter_values.hpp"
@@ -36,7 +36,7 @@ constexpr DriveSequenceParameters sequence(const AxisValues& v, float samples_a_
           .brake_application = samples(v.get<"brake.apply_time">())};
 }
 
-/// A number of counts that motion may reach as a whole and a fraction; 0 where it is out of range.
+/// Counts as an increment with whole and fraction; 0 if out of range.
 constexpr Increment bounded_counts(float counts) {
   constexpr float kMost = 16384;  // 2^14
   return counts > 0 && counts <= kMost ? ScalarTraits<float>::to_increment(counts) : 0;
@@ -82,7 +82,7 @@ constexpr float tangent(float x) {
   return rest / x;
 }
 
-/// `share`: frequency over control rate. An a1 of 0, which no filter has, where that is out of reach.
+/// `share`: frequency over control rate. If that is out of range, a1 is 0, which no filter has.
 [[gnu::noinline]] constexpr BiquadParameters<float> biquad(bool on, float share, float damping) {
   BiquadParameters<float> f;
   f.on = on;

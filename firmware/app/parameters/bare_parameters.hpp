@@ -10,15 +10,15 @@ namespace firmware {
 
 namespace bare_parameters {
 
-inline constexpr float kNever = 1e9F;  ///< a threshold that nothing reaches
+inline constexpr float kNever = 1e9F;  ///< a threshold that is never reached
 inline constexpr float kLittle = 1e-4F;
 
-/// `v` of an axis that is not fitted; `velocity_per_count`: rad/s (m/s) of a count a sample, and `velocity` the largest
-/// that the box allows; both 0 where the tachometer's scale is not known, and below 0 where there is no tachometer.
+/// `v`: values of an axis that is not fitted. `velocity_per_count`: rad/s (m/s) for one count a sample; `velocity`: the
+/// largest velocity in the box. Both are 0 if the tachometer's scale is not known, and negative without a tachometer.
 ///
-/// The estimate is the encoder's, smoothed (an alpha-beta filter with 1/2 and 1/10), for a model without effort. The
-/// sensors are held against each other where their scales are known; everything else is the box's to judge. Amplifier
-/// and brake are the axis's own: their parameters count here as they do in a closed loop.
+/// The estimate is the smoothed encoder reading (an alpha-beta filter with 1/2 and 1/10), for a model without effort.
+/// The sensors are compared with each other if their scales are known; the box limits everything else. The parameters
+/// of amplifier and brake apply as in a closed loop.
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float rate_Hz, float velocity_per_count,
                                                     float velocity) {
   AxisParameters<float> p;
@@ -49,7 +49,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
   m.saturation_samples = std::numeric_limits<std::int32_t>::max();
   m.capture_stride = capture_stride(rate_Hz);
   p.sequence = axis_values::sequence(v, rate_Hz);
-  // References do not move; a stop that does not come to rest ends after about a second.
+  // References are constant; a stop that does not come to rest ends after about a second.
   const auto half_second = static_cast<Increment>(static_cast<std::int32_t>(rate_Hz) / 2);
   p.motion = {.velocity = kOneCount * 1000,
               .acceleration = kOneCount * 1000 / half_second,

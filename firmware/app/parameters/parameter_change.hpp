@@ -1,4 +1,4 @@
-// What a change from one set of parameters to another asks for.
+// Consequences of a change from one set of parameters to another.
 #pragma once
 
 #include <bit>
@@ -18,7 +18,7 @@ constexpr std::size_t change_that_needs_standstill(const ParameterValues& from, 
   return from.size();
 }
 
-/// What was counted from home is from home no longer.
+/// Whether the change invalidates home.
 constexpr bool do_counts_change_meaning(const AxisValues& from, const AxisValues& to) {
   return from.get<"drive.encoder_resolution">() != to.get<"drive.encoder_resolution">() ||
          from.get<"homing.mode">() != to.get<"homing.mode">() ||

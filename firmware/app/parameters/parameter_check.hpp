@@ -1,4 +1,4 @@
-// Whether a whole set of values may be taken over: each in its range, and all fitting each other.
+// Checks whether a whole set of values may be taken over: each in its range, and all consistent.
 #pragma once
 
 #include "firmware/app/parameters/axis_values.hpp"
@@ -21,7 +21,7 @@ constexpr std::uint16_t id_of() {
   return parameter_rows::kRules[parameter_rows::row_named<name>()].id;
 }
 
-/// The parameter that the control core's complaint is about.
+/// The parameter to which the control core's refusal refers.
 constexpr std::uint16_t id_behind(Refusal refusal) {
   const std::uint16_t id = parameter_behind(refusal);
   return id != 0 ? id : id_of<"drive.sample_period">();
@@ -46,8 +46,8 @@ constexpr SetRefusal check_axis(const ParameterValues& values, std::size_t axis)
 
 }  // namespace parameter_check
 
-/// The first problem of a set for a board that computes in `Scalar`. An axis that is not fitted needs no sense in its
-/// values, but each must be in its range.
+/// The first problem of a set for a board that computes in `Scalar`. The values of an axis that is not fitted need not
+/// be consistent, but each must be in its range.
 template <typename Scalar>
 constexpr SetRefusal check(const ParameterValues& values) {
   for (std::size_t place = 0; place < values.size(); ++place) {

@@ -1,5 +1,5 @@
-// The one table of parameters. Storage, checks, ids of store and protocol, help, documentation and the schema hash all
-// come from it: a new parameter is a new row here and its use by name, values.get<"group.name">(). The thresholds of
+// The table of all parameters. Storage, checks, ids of store and protocol, help, documentation and the schema hash are
+// derived from it: a new parameter is a new row here and its use by name, values.get<"group.name">(). The thresholds of
 // monitors are declared with their faults, firmware/core/supervision/monitored_faults.hpp (ids 144 to 159 and 251).
 #pragma once
 
@@ -17,8 +17,8 @@ using enum ParameterScope;
 using enum ParameterType;
 using enum ParameterChange;
 
-// Ranges keep nonsense out (a sign, a factor of a thousand); whether values fit each other is checked when a whole set
-// is taken over. Where rotary and linear drives differ in unit, the range covers both.
+// Ranges exclude gross errors (a sign, a factor of a thousand); consistency of the values is checked when a whole set
+// is taken over. If the units of rotary and linear drives differ, the range covers both.
 inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     // id scope  name                        type    unit            linear     minimum maximum initial  change
     {1, board, "control.rate", whole, "Hz", "Hz", 250, 20000, 1000, while_disabled,
@@ -113,7 +113,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {132, axis, "limits.unhomed_velocity", real, "mm/s", "m/s", 0, 1e6F, 0, while_disabled,
      "of jogs and moves before homing; 0: limits.velocity"},
 
-    // What identification finds a drive to do besides: firmware/core/compensation.
+    // Further effects of a drive that identification finds: firmware/core/compensation.
     {160, axis, "calibration.tachometer_gain", real, "1", "1", 0.5F, 2, 1, while_disabled,
      "reading over true speed; 1: correct"},
     {161, axis, "calibration.tachometer_offset", real, "rad/s", "m/s", -1e3F, 1e3F, 0, while_disabled,
@@ -177,14 +177,14 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {250, axis, "brake.apply_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
      "until an applied brake holds: the enable stays on until then"},
 
-    // Of an excitation in open loop: app/limit_reply.hpp.
+    // For an excitation in open loop: app/limit_reply.hpp.
     {256, axis, "unfitted.volts", real, "V", "V", 0, 20, 6, while_disabled,
      "largest command of an experiment while the axis is not fitted"},
     {257, axis, "unfitted.time", real, "s", "s", 0, 3600, 120, while_disabled, "longest experiment, likewise"},
     {258, axis, "unfitted.counts", whole, "", "", 1, 268435456, 1000000, while_disabled,
      "farthest travel of an experiment in each direction, counts, while the axis is not fitted"},
 
-    // Behind the feedback: firmware/core/control/control_filter.hpp.
+    // Filters after the feedback: firmware/core/control/control_filter.hpp.
     {272, axis, "notch.on", toggle, "", "", 0, 1, 0, while_disabled, "remove a resonance's frequency from the command"},
     {273, axis, "notch.frequency", real, "Hz", "Hz", 1, 1e4F, 100, while_disabled, "below 0.45 of the control rate"},
     {274, axis, "notch.damping", real, "1", "1", 0.01F, 2, 0.5F, while_disabled, "half its width over its frequency"},
@@ -194,7 +194,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "of its two poles; below 0.45 of the control rate"},
     {278, axis, "low_pass.damping", real, "1", "1", 0.1F, 2, 0.7F, while_disabled, "of its two poles"},
 
-    // The table itself lies beside the parameters in the store: firmware/core/compensation/pitch_table.hpp.
+    // The table itself is stored beside the parameters: firmware/core/compensation/pitch_table.hpp.
     {288, axis, "pitch.on", toggle, "", "", 0, 1, 0, while_disabled,
      "subtract the screw's error from the reference, by the axis's table (axistool pitch); acts once homed"},
     {289, axis, "pitch.crossing_time", real, "s", "s", 1e-3F, 0.2F, 0.05F, while_disabled,
@@ -209,7 +209,7 @@ inline constexpr std::size_t kThresholds = [] {
 
 using Rows = std::array<ParameterInfo, kOwnRows.size() + kThresholds>;
 
-/// With the monitors' thresholds, in the order of the ids.
+/// All rows, including the monitors' thresholds, in the order of the ids.
 constexpr Rows with_thresholds() {
   Rows rows{};
   std::size_t place = 0;

@@ -44,7 +44,7 @@ constexpr std::array<ParameterRule, kRows.size()> rules_of_rows() {
   return rules;
 }
 
-/// The rows without their texts, which therefore stay out of the image.
+/// The rows without their texts, so that these are not part of the image.
 inline constexpr std::array<ParameterRule, kRows.size()> kRules = rules_of_rows();
 
 /// A name as template argument.
@@ -120,7 +120,7 @@ class AxisValues {
     return parameter_rows::typed<name>(first_[kRow - parameter_rows::kBoardRows]);
   }
 
-  /// As it is kept, for lists of parameters.
+  /// The value as stored, for lists of parameters.
   template <std::uint16_t id>
   constexpr float with_id() const {
     constexpr auto kRow = static_cast<std::size_t>(std::ranges::find(parameter_rows::kRules, id, &ParameterRule::id) -

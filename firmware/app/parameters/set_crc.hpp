@@ -1,4 +1,4 @@
-// One number for a whole set of values: host and board agree on what is to be taken over.
+// Checksum of a whole set of values, by which host and board agree on the set to be taken over.
 #pragma once
 
 #include "firmware/app/crc32.hpp"

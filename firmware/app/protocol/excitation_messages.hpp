@@ -1,11 +1,11 @@
-// Payloads of the requests that excite an axis. Little-endian, as they lie in the report: README.md.
+// Payloads of the requests that excite an axis. Little-endian, in the layout of the report: README.md.
 #pragma once
 
 #include "firmware/app/protocol/messages.hpp"
 
 namespace firmware {
 
-/// Levels or lines, before the request that starts.
+/// Levels or lines, sent before the request that starts the excitation.
 inline constexpr std::size_t kEntriesPerReport = 4;
 struct ExcitationEntriesRequest {
   std::uint8_t axis = 0;
@@ -21,17 +21,17 @@ struct ExcitationEntriesRequest {
 };
 static_assert(sizeof(ExcitationEntriesRequest) == kPayloadSize);
 
-/// Values stand in steps of the D/A converter (open loop, controller's output), counts (reference) or counts a sample
-/// (jog): the board need not know a unit.
+/// Values are in steps of the D/A converter (open loop, controller's output), counts (reference) or counts a sample
+/// (jog), so that the board need not know physical units.
 struct ExcitationRequest {
   std::uint8_t axis = 0;
   std::uint8_t kind = 0;   ///< ExcitationKind
   std::uint8_t input = 0;  ///< ExcitationInput
-  std::uint8_t count = 0;  ///< entries that were loaded
+  std::uint8_t count = 0;  ///< number of loaded entries
   std::int32_t travel_counts = 0;
   std::int32_t margin_counts = 0;
   float speed = 0;           ///< counts a sample
-  float drive_velocity = 0;  ///< the same, rad/s (m/s); 0: not known; below 0: there is no tachometer
+  float drive_velocity = 0;  ///< the same, rad/s (m/s); 0: not known; negative: no tachometer
   float volts = 0;           ///< steps of the converter
   std::uint32_t samples = 0;
   float amplitude = 0;

@@ -1,4 +1,4 @@
-// The fault log on the wire, as its entries lie in flash.
+// The fault log in messages; entries have the same layout as in flash.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@ namespace firmware {
 
 inline constexpr std::size_t kLoggedFaults = 64;  ///< the newest ones
 
-/// A fault of an axis; or, where `reset` is not 0, that the program ended by itself: then counts() says where the
-/// processor was, `second_fault` is the exception's number, and bit n of `activity` says that axis n was enabled.
+/// A fault of an axis. If `reset` is not 0, an end of the program by itself: then counts() gives the processor's
+/// address, `second_fault` the exception's number, and bit n of `activity` is set if axis n was enabled.
 struct LoggedFault {
-  std::uint32_t number = 0;      ///< of the faults since the log began, the first is 1
-  std::uint32_t run_s = 0;       ///< that the board had run in all
-  std::uint32_t counts_low = 0;  ///< of a reset: the address that the processor was at; 0: not known
+  std::uint32_t number = 0;      ///< consecutive number of the fault since the log began, from 1
+  std::uint32_t run_s = 0;       ///< total running time of the board
+  std::uint32_t counts_low = 0;  ///< of a reset: the processor's address; 0: not known
   std::int32_t counts_high = 0;  ///< of a reset: the processor's fault status, CFSR
   float velocity = 0;            ///< estimated, rad/s (m/s)
   std::int16_t dac_code = 0;
@@ -27,7 +27,7 @@ struct LoggedFault {
   std::uint8_t homed = 0;     ///< 1: the counts are from home
   std::uint8_t reset = 0;     ///< boards::ResetCause of the start that wrote this
 
-  constexpr bool is_event() const { return fault != 0 || reset != 0; }  ///< else it says the time alone
+  constexpr bool is_event() const { return fault != 0 || reset != 0; }  ///< otherwise it gives only the time
   constexpr std::int64_t counts() const { return whole_counts(counts_low, counts_high); }
   bool operator==(const LoggedFault&) const = default;
 };
@@ -38,7 +38,7 @@ struct FaultLogRequest {
 };
 
 struct FaultLogPayload {
-  std::uint32_t run_s = 0;  ///< that the board has run in all, until now
+  std::uint32_t run_s = 0;  ///< total running time of the board until now
   LoggedFault entry{};
 };
 

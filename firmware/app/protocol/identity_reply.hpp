@@ -1,4 +1,4 @@
-// Who a board says that it is.
+// Makes a board's reply to identify.
 #pragma once
 
 #include <algorithm>

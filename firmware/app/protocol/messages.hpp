@@ -1,4 +1,5 @@
-// Requests, replies and their payloads. Little-endian, each struct as it lies in the report from byte 8 on: README.md.
+// Requests, replies and their payloads. Little-endian; each struct has the layout of the report from byte 8 on:
+// README.md.
 #pragma once
 
 #include <array>
@@ -61,7 +62,7 @@ enum class MessageType : std::uint8_t {
   finish_update = 0x62,
   confirm_update = 0x63,
   read_slot = 0x64,
-  samples = 0x70,   ///< from the board, unasked, while a capture runs
+  samples = 0x70,   ///< from the board, unrequested, while a capture runs
   rejected = 0x7F,  ///< from the board: a report that could not be decoded
 };
 
@@ -75,33 +76,33 @@ constexpr MessageType reply_to(MessageType request) {
 enum class Status : std::uint8_t {
   ok = 0,
   unknown_request = 1,
-  malformed = 2,          ///< the payload has not the request's length, or names an axis that is not there
+  malformed = 2,          ///< the payload has a wrong length, or names a missing axis
   damaged = 3,            ///< checksum or length of the report
   wrong_version = 4,      ///< of the protocol
-  bad_value = 5,          ///< RefusedValuePayload says which and why
-  unknown_parameter = 6,  ///< RefusedValuePayload says which
+  bad_value = 5,          ///< RefusedValuePayload gives parameter and reason
+  unknown_parameter = 6,  ///< RefusedValuePayload gives the parameter
   drive_enabled = 7,      ///< refused while a drive is enabled; RefusedValuePayload may say which parameter
-  set_differs = 8,        ///< the staged set, table or image is not the one that was to be committed
+  set_differs = 8,        ///< the staged set, table or image differs from the one to be committed
   wrong_state = 9,        ///< the axis is not in a state that allows this
   not_fitted = 10,
   flash_failed = 11,
-  not_verified = 12,  ///< the saved set read back differently; the old one holds
+  not_verified = 12,  ///< the saved set read back differently; the old one remains valid
   unreachable = 13,   ///< a move that cannot be planned
   device_fault = 14,  ///< a fault is latched: read the status
   no_such_row = 15,
   others_motion = 16,  ///< another client moves the axes: wait, stop them, or take over
   restarting = 17,
-  outside_travel = 18,  ///< a move or a jog beyond a limit of travel; RefusedValuePayload says which limit
+  outside_travel = 18,  ///< a move or a jog beyond a limit of travel, which RefusedValuePayload gives
   not_standing = 19,    ///< an axis that is to be enabled moves, or its amplifier still reports ready
-  not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
-  homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
+  not_homed = 20,       ///< a move to a position by an axis that is not homed
+  homing_mode = 21,     ///< homing.mode searches, but the request states home; or the reverse
   others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it
   no_room = 23,         ///< for another node of a path: send it later
-  brown_out_off = 24,   ///< nothing moves before the chip's brown-out reset is set
+  brown_out_off = 24,   ///< no motion until the chip's brown-out reset is set
   bad_image = 25,       ///< RefusedImagePayload says why
-  on_trial = 26,        ///< nothing moves, and no update begins, before the image that runs is confirmed
-  no_probe = 27,        ///< a path that probes, and probe.input is 0 or the board has no such input
-  probe_already = 28,   ///< a path looks for contact that is there already, or for its loss, and there is none
+  on_trial = 26,        ///< no motion and no update until the running image is confirmed
+  no_probe = 27,        ///< a probing path, but probe.input is 0 or the board has no such input
+  probe_already = 28,   ///< a path looks for a contact that exists already, or for the loss of a missing one
 };
 
 struct IdentityPayload {
@@ -122,16 +123,16 @@ struct AxisStatus {
   std::uint8_t state = 0;
   std::uint8_t fault = 0;
   std::uint8_t flags = 0;         ///< kAxis…
-  std::uint8_t second_fault = 0;  ///< what went wrong besides while the fault brought the axis to a stop
+  std::uint8_t second_fault = 0;  ///< a further fault while the first one brought the axis to a stop
 
   constexpr std::int64_t counts() const { return whole_counts(counts_low, counts_high); }
 };
 inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8,
                               kAxisHomed = 16, kAxisHoming = 32,
-                              kAxisPitch = 64,  ///< the screw's error is taken off the reference
+                              kAxisPitch = 64,  ///< the screw's pitch error is subtracted from the reference
     kAxisScale = 128;                           ///< it has a second encoder, on the table
 
-/// Of the board as a whole, as the asking client sees it.
+/// State of the whole board, from the point of view of the requesting client.
 struct BoardStatus {
   std::uint32_t control_periods = 0;
   std::uint32_t store_sequence = 0;
@@ -148,7 +149,7 @@ struct StatusRequest {
   std::uint8_t first_axis = 0;
 };
 
-/// The board, and its axes from `first_axis` on, as many as fit; the payload ends with the last axis.
+/// The board, and as many axes as fit from `first_axis` on; the payload ends with the last axis.
 inline constexpr std::size_t kAxesPerStatus = 2;
 struct StatusPayload {
   BoardStatus board{};
@@ -156,12 +157,12 @@ struct StatusPayload {
 };
 static_assert(sizeof(StatusPayload) == kPayloadSize);
 inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8,
-                              kBoardYours = 16,  ///< the asking client owns the axes that are enabled
-    kBoardOthers = 32,                           ///< another one does
-    kBoardLeftAlone = 64,                        ///< axes that stood were disabled after host.standing_timeout
+                              kBoardYours = 16,  ///< the requesting client owns the enabled axes
+    kBoardOthers = 32,                           ///< another client owns them
+    kBoardLeftAlone = 64,                        ///< axes at rest were disabled after host.standing_timeout
     kBoardBrownOutOff = 128;
 
-/// Since start-up, or since the last request that asked to begin anew.
+/// Since start-up, or since the last request to reset.
 struct TimingPayload {
   std::uint32_t periods = 0;
   std::uint32_t shortest_us = 0;  ///< from one control period to the next
@@ -171,7 +172,7 @@ struct TimingPayload {
   std::uint32_t rejected_reports = 0;
   std::uint32_t stack_used = 0;
   std::uint32_t stack_size = 0;
-  std::uint32_t cycles_average = 0;  ///< processor clocks that the control interrupt takes; 0: not measured
+  std::uint32_t cycles_average = 0;  ///< processor clocks of the control interrupt; 0: not measured
   std::uint32_t cycles_worst = 0;
   std::uint32_t processor_Hz = 0;
 };
@@ -182,7 +183,7 @@ struct TimingRequest {
 
 inline constexpr std::size_t kValuesPerReport = 8;
 
-/// Values by key. As reply to read_values and read_stored: from place `first` on; a count below kValuesPerReport ends
+/// Values by key. In replies to read_values and read_stored: from place `first` on; a count below kValuesPerReport ends
 /// the set.
 struct ValuesPayload {
   std::uint16_t first = 0;
@@ -217,7 +218,7 @@ struct RefusedValuePayload {
   std::uint32_t bits = 0;
 };
 
-/// Beside the status of an `enable` that is refused: then none of the axes is enabled.
+/// Sent with the status of a refused `enable`, which enables none of the axes.
 struct RefusedAxisPayload {
   std::uint8_t axis = 0;
   std::array<std::uint8_t, 3> reserved{};
@@ -235,12 +236,12 @@ struct JogRequest {
 
 struct HomeRequest {
   std::uint8_t axis = 0;
-  std::uint8_t here = 0;  ///< 1: the operator says that the axis stands at homing.position
+  std::uint8_t here = 0;  ///< 1: the operator states that the axis is at homing.position
 };
 
 struct MoveRequest {
   std::uint8_t axis = 0;
-  std::uint8_t relative = 0;  ///< 1: by so many counts, from where the reference stands
+  std::uint8_t relative = 0;  ///< 1: by this many counts from the present reference
   std::array<std::uint8_t, 2> reserved{};
   std::uint32_t counts_low = 0;
   std::int32_t counts_high = 0;
@@ -261,8 +262,8 @@ struct MoveRequest {
   }
 };
 
-/// What a captured row may hold of one axis; a word of 32 bits each. "Scalar": the bits of a float, or the raw number
-/// of a fixed-point board (fixed_units.hpp).
+/// Channels of one axis in a captured row; a word of 32 bits each. "Scalar": the bits of a float, or the raw number of
+/// a fixed-point board (fixed_units.hpp).
 enum class Channel : std::uint8_t {
   dac_code = 0,
   counts = 1,               ///< low word of the encoder's counts
@@ -296,11 +297,10 @@ struct CaptureRequest {
 
 struct CaptureReply {
   std::uint32_t rows = 0;     ///< taken since the capture was started
-  std::uint32_t dropped = 0;  ///< of these, for want of room: the host did not fetch them in time
+  std::uint32_t dropped = 0;  ///< of these, lost because the host did not fetch them in time
 };
 
-/// Rows of a capture, unasked. Every row taken has a number, also one that had to be dropped: numbers tell what is
-/// lost.
+/// Rows of a capture, sent unrequested. Dropped rows are numbered too, so that gaps in the numbers show lost rows.
 struct SamplesPayload {
   std::uint32_t first_row = 0;
   std::array<std::uint32_t, kWordsPerReport> word{};
@@ -313,9 +313,9 @@ struct FaultRowRequest {
   std::uint16_t row = 0;  ///< 0 the oldest
 };
 
-/// One row of what an axis kept when a fault stopped it; scalars and words as in Channel.
+/// One row that an axis kept from before its fault; scalars and words as in Channel.
 struct FaultRowPayload {
-  std::uint16_t rows = 0;   ///< that there are
+  std::uint16_t rows = 0;   ///< available
   std::uint16_t every = 0;  ///< control periods from one row to the next
   std::uint32_t dac_code = 0;
   std::uint32_t counts = 0;

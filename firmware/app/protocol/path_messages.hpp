@@ -1,4 +1,4 @@
-// Payloads of the requests for a path. Little-endian, as they lie in the report: README.md.
+// Payloads of the requests for a path. Little-endian, in the layout of the report: README.md.
 #pragma once
 
 #include "firmware/app/protocol/messages.hpp"
@@ -7,8 +7,8 @@
 
 namespace firmware {
 
-/// What a node's first word holds has changed: 0 duration alone, 1 duration and headroom. Each end tells the other
-/// which nodes it means, so that neither reads the other's wrongly.
+/// Format of a node's first word: 0 duration alone, 1 duration and headroom. Each end states its format, so that
+/// neither misreads the other's nodes.
 inline constexpr std::uint8_t kPathNodeFormat = 1;
 
 struct OpenPathRequest {
@@ -21,7 +21,7 @@ struct OpenPathRequest {
 };
 static_assert(sizeof(OpenPathRequest) == 8);
 
-/// Where the references stand, from which the first node counts.
+/// The present references, from which the first node is counted.
 struct OpenPathPayload {
   struct Position {
     std::uint32_t counts_low = 0;
@@ -35,14 +35,14 @@ struct OpenPathPayload {
 };
 static_assert(sizeof(OpenPathPayload) == kPayloadSize);
 
-/// Nodes, as many as are sent: a word of duration and headroom (PathNode::set_time), then travel, velocity and
-/// acceleration of each axis of the mask.
-inline constexpr std::uint32_t kLastNode = 1u << 31;  ///< in the word of duration: nothing comes after it
+/// One or more nodes: a word with duration and headroom (PathNode::set_time), then travel, velocity and acceleration of
+/// each axis of the mask.
+inline constexpr std::uint32_t kLastNode = 1u << 31;  ///< in the word with the duration: the last node
 constexpr std::size_t path_node_size(std::size_t axes) { return 4 + 12 * axes; }
 static_assert(path_node_size(hal::kMostAxes) <= kPayloadSize);
 
 struct PathRateRequest {
-  std::uint16_t permille = 1000;  ///< of the speed that was planned, up to 1000
+  std::uint16_t permille = 1000;  ///< of the planned speed, up to 1000
   std::uint8_t held = 0;          ///< 1: feed hold
   std::uint8_t reserved = 0;
 };
@@ -53,17 +53,18 @@ struct PathStatePayload {
   std::uint8_t mask = 0;
   std::uint8_t held = 0;
   std::uint32_t elapsed = 0;  ///< samples of the path
-  std::uint32_t ahead = 0;    ///< likewise, that the board still has
+  std::uint32_t ahead = 0;    ///< samples of the path still to come
   std::uint32_t passed_nodes = 0;
   std::uint16_t room = 0;      ///< nodes that fit
-  std::uint16_t permille = 0;  ///< of the clock, now
+  std::uint16_t permille = 0;  ///< present rate of the clock
 };
 static_assert(sizeof(PathStatePayload) == 20);
 
-inline constexpr unsigned kProbeWired = 1;    ///< probe.input says so, and the board has the input
+inline constexpr unsigned kProbeWired = 1;    ///< probe.input is set, and the board has the input
 inline constexpr unsigned kProbeTouches = 2;  ///< now
-inline constexpr unsigned kProbeMet = 4;      ///< the last motion looked for it, or hit something, and it came
-inline constexpr unsigned kProbeLatched = 8;  ///< and where it came is exact
+inline constexpr unsigned kProbeMet =
+    4;  ///< the last motion found the edge that it looked for, or an unexpected contact
+inline constexpr unsigned kProbeLatched = 8;  ///< the position of that edge is exact
 
 struct ProbeStatePayload {
   struct Position {
@@ -72,7 +73,7 @@ struct ProbeStatePayload {
   };
   std::uint8_t flags = 0;  ///< kProbe…
   std::array<std::uint8_t, 3> reserved{};
-  std::array<Position, hal::kMostAxes> axis{};  ///< where the edge came
+  std::array<Position, hal::kMostAxes> axis{};  ///< position of the edge
 };
 static_assert(sizeof(ProbeStatePayload) == 36);
 

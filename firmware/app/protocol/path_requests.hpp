@@ -1,4 +1,4 @@
-// What the board makes of the requests for a path of several axes.
+// Handles the requests for a path of several axes.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// What the board makes of the requests for a table of pitch errors.
+// Handles the requests for a table of pitch errors.
 #pragma once
 
 #include <algorithm>

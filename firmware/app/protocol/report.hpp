@@ -27,11 +27,11 @@ struct Message {
   Status status = Status::ok;  ///< of a reply; a request has its client's pass here
   std::uint16_t sequence = 0;
   std::uint8_t length = 0;
-  std::uint16_t client = 0;  ///< who asks; a reply repeats it
+  std::uint16_t client = 0;  ///< the requesting client; a reply repeats it
   std::array<std::byte, kPayloadSize> payload{};
 
   constexpr void set_pass(std::uint8_t pass) { status = static_cast<Status>(pass); }
-  /// Of a request: number and pass.
+  /// For a request: number and pass of the client.
   constexpr ClientToken asker() const { return client | ClientToken{static_cast<std::uint8_t>(status)} << 16; }
 
   template <typename Payload>
@@ -41,7 +41,7 @@ struct Message {
     length = sizeof value;
   }
 
-  /// False, and `value` untouched, if the payload has another length.
+  /// False, without changing `value`, if the payload has another length.
   template <typename Payload>
   bool get(Payload& value) const {
     static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) <= kPayloadSize);
@@ -53,7 +53,7 @@ struct Message {
   bool operator==(const Message&) const = default;
 };
 
-/// Hands the payload to `handler`; malformed where the request has another length.
+/// Passes the payload to `handler`; malformed if the request has another length.
 template <typename Payload, typename Handler>
 Status with(const Message& request, Handler handler) {
   Payload payload;
@@ -77,7 +77,7 @@ inline hal::HidReport encode(const Message& message) {
   return report;
 }
 
-/// Any 64 bytes. The checksum is looked at first: of a report that was damaged nothing can be believed.
+/// Decodes any 64 bytes. Checks the checksum first, because a damaged report may contain anything.
 inline Status decode(const hal::HidReport& report, Message& message) {
   std::uint32_t crc = 0;
   std::memcpy(&crc, report.data() + kCrcOffset, sizeof crc);

@@ -1,4 +1,4 @@
-// Who may ask for what, and when: one line for each request. What has no line here is refused.
+// Who may send which request, and when: one line for each request. A request without a line is refused.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,19 @@
 namespace firmware {
 
 enum class Asker : std::uint8_t {
-  anyone,          ///< looking, stopping, disabling
-  commander,       ///< anyone while every axis stands; while one moves, the client that moves it
-  loader,          ///< a commander whose loaded excitation this is, or who needs none
+  anyone,          ///< reading, stopping, disabling
+  commander,       ///< anyone while every axis is at rest; while one moves, the client that moves it
+  loader,          ///< a commander that has loaded this excitation, or needs no entries
   path_client,     ///< a commander that opened the path
-  capture_client,  ///< whose streamed capture runs; anyone while none runs, or its client is silent
-  trigger_client,  ///< likewise of the capture in the board's memory
+  capture_client,  ///< the client whose streamed capture runs; anyone while none runs, or if its client is silent
+  trigger_client,  ///< the same for the capture in the board's memory
 };
 
 struct RequestRule {
   MessageType type;
   Asker asker;
-  bool in_motion;      ///< also while an axis moves, whoever asks
-  bool commands;       ///< the client owns the axes once it is accepted
+  bool in_motion;      ///< allowed while an axis moves
+  bool commands;       ///< once accepted, its client owns the axes
   std::uint8_t least;  ///< bytes of payload
   std::uint8_t most;
 };
@@ -38,7 +38,7 @@ inline constexpr auto kSize = static_cast<std::uint8_t>(sizeof(Payload));
 using enum Asker;
 
 // clang-format off
-/// A stop is a stop whatever its payload.
+/// A stop is accepted with any payload.
 inline constexpr std::array kRules = std::to_array<RequestRule>({
     // type                         asker           motion commands  payload
     {MessageType::identify,           anyone,         true,  false, 0, 0},
@@ -98,13 +98,14 @@ inline constexpr std::array kRules = std::to_array<RequestRule>({
 
 }  // namespace request_rules
 
-/// Nothing for what no host asks.
+/// Null for a type that is no request.
 constexpr const RequestRule* rule_of(MessageType type) {
   const auto* const found = std::ranges::find(request_rules::kRules, type, &RequestRule::type);
   return found != request_rules::kRules.end() ? found : nullptr;
 }
 
-/// Waits for a reset that was asked for: all but looking, stopping and disabling.
+/// Whether the request is refused between an accepted restart and the reset: all except reading, stopping and
+/// disabling.
 constexpr bool acts(const RequestRule& rule) { return rule.asker != Asker::anyone; }
 
 }  // namespace firmware

@@ -1,4 +1,4 @@
-// The board's end of the protocol: one request, one reply; samples in between.
+// The board's end of the protocol: one reply to each request, and samples in between.
 #pragma once
 
 #include <algorithm>
@@ -73,7 +73,7 @@ class ProtocolServer {
     if (reply.status == Status::ok && rule->commands) app_.become_owner(request.asker());
     capture_claim_.hear(request.asker(), app_.control_periods());
     trigger_claim_.hear(request.asker(), app_.control_periods());
-    app_.owner_heard(request.asker());  // last: a reply that says "at rest" also ends the watch for the heart-beat
+    app_.owner_heard(request.asker());  // last: a reply "at rest" also ends the monitoring of the heartbeat
     return encode(reply);
   }
 
@@ -400,7 +400,7 @@ class ProtocolServer {
     return Status::ok;
   }
 
-  /// Whoever ends what is armed, or what it has read, leaves the memory to others.
+  /// A client that ends its armed or read capture releases the memory for others.
   Status arm(const TriggerRequest& request, ClientToken client) {
     const Status status = app_.arm(request);
     if (status != Status::ok) return status;
@@ -427,7 +427,7 @@ class ProtocolServer {
   }
 
   void restart_when_the_reply_is_gone() {
-    // 20 ms: through the queue and over the wire.
+    // 20 ms, so that the reply passes the queue and the wire.
     const std::uint32_t longest_way = static_cast<std::uint32_t>(app_.active().template get<"control.rate">()) / 50;
     if (app_.control_periods() - restart_asked_at_ < longest_way) return;
     restart_wanted_ = false;

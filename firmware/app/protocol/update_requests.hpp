@@ -1,4 +1,4 @@
-// What the board makes of the requests for a new image of its program.
+// Handles the requests for a new image of the board's program.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace firmware {
 
-/// A board that has a flash of programs and boot code; others know none of these requests.
+/// A board with boot code and flash for images; other boards do not know these requests.
 template <typename Board>
 concept UpdatableBoard = requires(Board& board) {
   requires hal::Flash<std::remove_reference_t<decltype(board.image_flash())>>;
@@ -33,10 +33,10 @@ class UpdateRequests<Application> {
   UpdateRequests(Application& app, const ImageHeader& own)
       : app_(app), update_(app.board().image_flash(), own), is_on_trial_(update_.is_on_trial()) {}
 
-  /// The image that runs was started for the first time and has not been confirmed.
+  /// The running image was started for the first time and has not been confirmed.
   bool is_on_trial() const { return is_on_trial_; }
 
-  /// Nobody has confirmed it in time: a reset brings the older one back.
+  /// It has not been confirmed in time: a reset starts the older image again.
   bool trial_has_failed() const {
     return is_on_trial_ && !app_.any_enabled() && app_.control_periods() / control_rate_Hz() >= kTrial_s;
   }
@@ -68,7 +68,7 @@ class UpdateRequests<Application> {
   using Flash = std::remove_reference_t<decltype(std::declval<Application&>().board().image_flash())>;
   using Slots = ImageSlots<Flash>;
 
-  /// A host sees the board again within seconds of its restart, by USB's rules within 5 s.
+  /// A host finds the board again within seconds of its restart, by the rules of USB within 5 s.
   static constexpr std::uint32_t kTrial_s = 30;
 
   std::uint32_t control_rate_Hz() const {

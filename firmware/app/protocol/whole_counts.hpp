@@ -1,4 +1,4 @@
-// A position of 64 bits, as messages carry it in two words.
+// A position of 64 bits as two words of a message.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The last faults of a board in flash, with the time that it has run: two sectors, of which one always holds them all.
+// The last faults of a board in flash, with its running time: two sectors, one of which always holds all entries.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 
 namespace firmware {
 
-/// Entries are appended to one sector. When it is full the newest faults are copied to the other one, whose head is
-/// written last and makes it the one in use: at any power cut all that was ever added is there, and of the entry that
-/// was being written all or nothing. An entry without an event only says how long the board has run.
+/// Entries are appended to one sector. When it is full, the newest faults are copied to the other one, whose head is
+/// written last and makes it the sector in use. A power cut at any time loses no earlier entry, and the entry being
+/// written is complete or absent. An entry without an event only gives the running time.
 template <hal::Flash Flash>
 class FaultLog {
  public:
-  static constexpr std::size_t kFirstSector = 2;  ///< of the flash: the parameter store has those before
+  static constexpr std::size_t kFirstSector = 2;  ///< of the flash: the parameter store uses the sectors before
 
   explicit constexpr FaultLog(Flash& flash) : flash_(flash) {}
 
-  /// Once, at start-up. Erases on a chip that has no log yet, and where the sector in use is nearly full: so an erase
-  /// while the board runs is rare.
+  /// Call it once, at start-up. Erases if the chip has no log yet, and if the sector in use is nearly full, so that
+  /// erases while the board runs are rare.
   void load() {
     kept_ = 0;
     head_ = {};
@@ -45,7 +45,7 @@ class FaultLog {
     if (next_ > entries() / 4 * 3) begin_sector();
   }
 
-  /// Stalls the processor as ParameterStore::save does. False where the flash does not take it.
+  /// Stalls the processor as ParameterStore::save does. False if the flash fails.
   bool add(LoggedFault entry) {
     entry.number = entry.is_event() ? number_ + 1 : number_;
     if (next_ >= entries() && !begin_sector()) return false;
@@ -56,13 +56,13 @@ class FaultLog {
 
   /// At most kLoggedFaults.
   std::size_t size() const { return std::min(kept_, kLoggedFaults); }
-  /// `age` 0 is the newest. Empty beyond the oldest, and where it is there no more as it was written.
+  /// `age` 0 is the newest. Empty beyond the oldest, and for a damaged entry.
   std::optional<LoggedFault> entry(std::size_t age) {
     if (age >= size()) return std::nullopt;
     const auto stored = read_at<Stored>(sector_, places_[(kept_ - 1 - age) % kLoggedFaults] * sizeof(Stored));
     return stored.crc == crc_of(stored) ? std::optional(stored.entry) : std::nullopt;
   }
-  /// That the newest entry tells.
+  /// Running time in the newest entry.
   std::uint32_t run_s() const { return run_s_; }
 
  private:
@@ -71,7 +71,7 @@ class FaultLog {
     std::uint32_t crc = 0;
   };
   static_assert(sizeof(Stored) == 32);
-  /// In place of the first entry of a sector; the one with the higher generation is in use.
+  /// Stored in place of the first entry of a sector; the sector with the higher generation is in use.
   struct Head {
     std::uint32_t magic = 0, generation = 0, crc = 0;
   };
@@ -105,7 +105,7 @@ class FaultLog {
     return std::ranges::equal(bytes, std::as_bytes(std::span(&back, 1)));
   }
 
-  /// At the next place that reads back as it was written; `next` comes to lie behind it.
+  /// Writes to the next place that reads back correctly, and sets `next` to the place after it.
   bool put_next(std::size_t sector, std::size_t& next, const LoggedFault& entry) {
     while (next < entries())
       if (put(sector, next++, entry)) return true;
@@ -118,7 +118,7 @@ class FaultLog {
     if (entry.is_event()) places_[kept_++ % kLoggedFaults] = static_cast<std::uint16_t>(place);
   }
 
-  /// The other sector takes over, with what is kept.
+  /// Copies the kept faults to the other sector, which takes over.
   bool begin_sector() {
     const std::size_t target = 1 - sector_;
     if (flash_.erase(kFirstSector + target) != hal::FlashResult::ok) return false;

@@ -1,4 +1,4 @@
-// Parameters and tables of pitch errors in flash: two slots, of which one always holds a whole set.
+// Parameters and tables of pitch errors in flash: two slots, one of which always holds a complete set.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 
 namespace firmware {
 
-/// What start-up found. Numbers are permanent. Drives may run with empty (no axis is fitted then), loaded and migrated.
+/// Result of start-up. Numbers are permanent. Drives may run with empty (then no axis is fitted), loaded and migrated.
 enum class StoreState : std::uint8_t {
   empty = 0,       ///< nothing was ever saved: initial values
-  loaded = 1,      ///< the newest set, as it was saved
-  migrated = 2,    ///< saved under another table, and every value found its place
-  incomplete = 3,  ///< some values fit this table no more; they stay readable until the next save
-  damaged = 4,     ///< the newest set is there, but not as it was written
+  loaded = 1,      ///< the newest set, unchanged
+  migrated = 2,    ///< saved with another table, but this table has every value
+  incomplete = 3,  ///< some values do not fit this table; they stay readable until the next save
+  damaged = 4,     ///< the newest set is damaged
 };
 
 enum class SaveResult : std::uint8_t { saved = 0, flash_failed = 1, not_verified = 2 };
@@ -29,21 +29,21 @@ enum class SaveResult : std::uint8_t { saved = 0, flash_failed = 1, not_verified
 struct StoreReport {
   StoreState state = StoreState::empty;
   std::uint32_t sequence = 0;     ///< of the set in use; 0 without one
-  std::uint32_t schema_hash = 0;  ///< that it was saved under
+  std::uint32_t schema_hash = 0;  ///< of the table with which it was saved
   std::uint32_t erases = 0;       ///< of both sectors together; each endures 10,000 (STM32F405 datasheet, table 42)
   std::uint16_t not_migrated = 0;
 };
 
-/// A save erases the slot beside the newest set, writes tables, entries and header there, reads them back, and only
-/// then programs the mark that makes them valid; last it marks the older set as superseded. So at any power cut the
-/// newest valid set is the old or the new one, and a superseded set without a successor betrays damage that no power
-/// cut explains: it is never put in place of what the user saved last.
+/// A save erases the slot that does not hold the newest set, writes tables, entries and header there, reads them back,
+/// and then programs the mark that makes them valid. Last, it marks the older set as superseded. After a power cut at
+/// any time, the newest valid set is therefore the old or the new one. A superseded set without a successor shows
+/// damage that no power cut explains; it never replaces the set that the user saved last.
 template <hal::Flash Flash>
 class ParameterStore {
  public:
   explicit constexpr ParameterStore(Flash& flash) : flash_(flash) {}
 
-  /// Call once at start-up. Sets in `values` what the store holds; with damaged, or empty, `values` are left alone.
+  /// Call it once at start-up. Copies the stored values to `values`; if damaged or empty, does not change them.
   StoreReport load(ParameterValues& values) {
     examine();
     report_ = {};
@@ -68,16 +68,16 @@ class ParameterStore {
     return report_;
   }
 
-  /// Stalls the processor for as long as an erase lasts: never while a drive is enabled, and with a watchdog that
-  /// allows for it. After anything but saved the store holds what it held.
+  /// Stalls the processor for the duration of an erase, so call it only while no drive is enabled, and with a watchdog
+  /// that allows this time. Unless it returns saved, the store keeps its former contents.
   SaveResult save(const ParameterValues& values) {
     if (!begin_set()) return SaveResult::flash_failed;
     return finish_set(values, kNoAxis);
   }
 
-  /// A table comes part by part into the slot that the next save would take, and becomes part of the store, with the
-  /// parameters, by finish_table(). Until then the store holds what it held; a save in between forgets the table.
-  /// `values`: as many as will be saved with it.
+  /// Writes a table part by part into the slot that the next save would use. finish_table() makes it part of the store,
+  /// together with the parameters. Until then the store keeps its former contents; a save in between discards the
+  /// table. `values`: as many as will be saved with it.
   SaveResult begin_table(std::size_t values, std::uint16_t axis, std::uint16_t points, std::uint32_t resolution_bits) {
     const std::size_t size = tables_offset(values) + sizeof staged_ + points * sizeof(PitchPoint);
     if (size > flash_.sector_size() || !begin_set()) return SaveResult::flash_failed;
@@ -90,7 +90,7 @@ class ParameterStore {
   const StoredTableHead& staged_table() const { return staged_; }
   std::size_t staged_points() const { return staged_count_; }
 
-  /// The next points of it. False where there are too many, one may not follow the one before, or flash refuses.
+  /// The next points. False if there are too many, if one may not follow the one before, or if the flash fails.
   bool add_point(const PitchPoint& point) {
     if (!is_staging_ || staged_count_ == staged_.points || !is_valid(point)) return false;
     if (staged_count_ > 0 && !may_follow(last_point_, point)) return false;
@@ -101,7 +101,7 @@ class ParameterStore {
     return true;
   }
 
-  /// `crc`: of the points that were meant. A table without points removes the axis's.
+  /// `crc`: of all points that the host sent. A table without points removes the axis's table.
   SaveResult finish_table(const ParameterValues& values, std::uint32_t crc) {
     if (!is_staging_ || staged_count_ != staged_.points) return SaveResult::not_verified;
     const std::size_t size = staged_count_ * sizeof(PitchPoint);
@@ -114,14 +114,16 @@ class ParameterStore {
 
   const StoreReport& report() const { return report_; }
 
-  /// Of the newest valid set; without points where the axis has none. Lies in flash, until the second save from now.
+  /// Table of the newest valid set; without points if the axis has none. It lies in flash and stays valid until the
+  /// second save from now.
   StoredTable table(std::size_t axis) const {
     StoredTable found;
     for_each_table([&](const StoredTable& one) { found = one; }, axis);
     return found;
   }
 
-  /// The entries of the newest valid set as they lie in flash, for a backup that keeps what this table does not know.
+  /// The entries of the newest valid set in their flash layout, for a backup that also keeps entries unknown to this
+  /// table.
   std::size_t entry_count() const { return newest_ ? slots_[*newest_].header.length / sizeof(StoredEntry) : 0; }
   std::optional<StoredEntry> entry(std::size_t index) {
     if (index >= entry_count()) return std::nullopt;
@@ -174,7 +176,7 @@ class ParameterStore {
     return SaveResult::saved;
   }
 
-  /// Of the newest set, behind what was staged.
+  /// Copies the tables of the newest set to the place after the staged table.
   bool copy_tables(std::size_t target, std::size_t offset, std::size_t replaced) {
     if (replaced != kNoAxis && staged_.points != 0) offset += sizeof staged_ + staged_.points * sizeof(PitchPoint);
     bool all_copied = true;
@@ -187,7 +189,7 @@ class ParameterStore {
     return all_copied;
   }
 
-  /// Of the newest set, unless it is known that another one came after it.
+  /// The newest set, unless it has been superseded.
   template <typename Visit>
   void for_each_table(Visit visit, std::size_t axis = kEveryAxis) const {
     if (!newest_ || slots_[*newest_].marks.superseded != kNotProgrammed) return;
@@ -244,7 +246,7 @@ class ParameterStore {
     return crc.value();
   }
 
-  /// Nothing was ever made valid: each slot is blank, or the very first save was cut short.
+  /// No set was ever valid: each slot is blank, or the first save was interrupted.
   bool is_untouched() const {
     return std::ranges::none_of(slots_, [](const Slot& slot) {
       return slot.marks.valid == kValidMark || slot.marks.superseded != kNotProgrammed;
@@ -253,7 +255,7 @@ class ParameterStore {
 
   std::uint32_t highest_sequence() const { return highest(&StoredHeader::sequence); }
   std::uint32_t most_erases() const { return highest(&StoredHeader::erases); }
-  /// Of the slots whose header can be believed.
+  /// Considers only slots with an intact header.
   std::uint32_t highest(std::uint32_t StoredHeader::*field) const {
     std::uint32_t most = 0;
     for (const Slot& slot : slots_)

@@ -1,4 +1,4 @@
-// Whether parameters go with the tables of pitch errors in the store.
+// Checks whether parameters fit the tables of pitch errors in the store.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// How one slot of the parameter store looks in flash.
+// Layout of one slot of the parameter store in flash.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ struct StoredEntry {
 };
 static_assert(sizeof(StoredEntry) == 8 && std::is_trivially_copyable_v<StoredEntry>);
 
-/// What stands in front of the entries. Little-endian words, written in this order after the entries.
+/// Header before the entries. Little-endian words, written in this order after the entries.
 struct StoredHeader {
   std::uint32_t magic = 0;
   std::uint32_t schema_hash = 0;
@@ -28,16 +28,16 @@ struct StoredHeader {
 static_assert(sizeof(StoredHeader) == 24 && std::is_trivially_copyable_v<StoredHeader>);
 static_assert(std::endian::native == std::endian::little);
 
-/// Words behind the header that a save programs one by one, after everything else has been read back.
+/// Words after the header that a save programs one by one, after everything else has been read back.
 struct StoredMarks {
   std::uint32_t valid = 0;       ///< kValidMark once header and entries have been verified
-  std::uint32_t superseded = 0;  ///< anything but kNotProgrammed once the next set was valid
+  std::uint32_t superseded = 0;  ///< differs from kNotProgrammed once the next set is valid
 };
 static_assert(sizeof(StoredMarks) == 8 && std::is_trivially_copyable_v<StoredMarks>);
 
 inline constexpr std::uint32_t kStoreMagic = 0x53505841;  // "AXPS"
 inline constexpr std::uint32_t kNotProgrammed = 0xFFFFFFFF;
-/// Bits of both kinds all over the word: half a mark is no mark.
+/// Has ones and zeros throughout the word, so that a partly programmed mark does not count.
 inline constexpr std::uint32_t kValidMark = 0x5AC33CA5;
 inline constexpr std::size_t kMarksOffset = sizeof(StoredHeader);
 inline constexpr std::size_t kEntriesOffset = kMarksOffset + sizeof(StoredMarks);

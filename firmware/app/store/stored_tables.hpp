@@ -1,4 +1,4 @@
-// The tables of pitch errors in a slot of the parameter store, one behind the other, behind the slot's parameters.
+// The tables of pitch errors in a slot of the parameter store, one after the other, after the slot's parameters.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace firmware {
 
-/// What stands in front of a table's points. Little-endian.
+/// Header before a table's points. Little-endian.
 struct StoredTableHead {
   std::uint32_t magic = 0;
   std::uint16_t axis = 0;
@@ -30,14 +30,14 @@ inline std::uint32_t crc_of_table(const StoredTableHead& head, std::span<const s
 
 struct StoredTable {
   StoredTableHead head{};
-  PitchTable points;                 ///< in their place
+  PitchTable points;                 ///< where they are stored
   std::span<const std::byte> bytes;  ///< head and points
 };
 
 inline constexpr std::size_t kEveryAxis = ~std::size_t{0};
 
-/// Shows `visit` each table from `first` on, of a slot's bytes, or one axis's. False where one is not as it was
-/// written.
+/// Calls `visit` for each table from `first` on in a slot's bytes, or for one axis's table. False if a table is
+/// damaged.
 template <typename Visit>
 bool for_each_table(std::span<const std::byte> slot, std::size_t first, Visit visit, std::size_t axis = kEveryAxis) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;

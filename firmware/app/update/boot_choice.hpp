@@ -1,4 +1,4 @@
-// What the boot code does before it starts the program: chooses a slot, and copies it to where programs run.
+// Work of the boot code before it starts the program: chooses a slot and copies it to the program's place.
 #pragma once
 
 #include "firmware/app/update/image_slots.hpp"
@@ -6,15 +6,15 @@
 namespace firmware {
 
 enum class BootResult : std::uint8_t {
-  nothing,   ///< no whole image lies in the program's place
-  program,   ///< one does
-  on_trial,  ///< likewise, and it has not reported yet that it is healthy
+  nothing,   ///< there is no complete image in the program's place
+  program,   ///< there is a complete image
+  on_trial,  ///< there is a complete image that has not yet reported that it is healthy
 };
 
-/// The newest image that has not failed runs. It is copied into the program's place unless it is there; a slot is never
-/// changed but for its marks, so a power cut at any moment is mended by doing all of this again. An image that was
-/// never started is marked as tried first: unless that run reports that it is healthy, the older image returns at the
-/// next reset. A program that `axistool flash` put there runs as it is.
+/// Runs the newest image that has not failed, after copying it to the program's place unless it is already there. Only
+/// marks of a slot change, so after a power cut at any time the next start repeats all of this. An image that was never
+/// started is first marked as tried; unless its run reports that it is healthy, the older image returns at the next
+/// reset. A program that `axistool flash` wrote runs unchanged.
 template <hal::Flash Flash>
 class BootChoice {
  public:
@@ -32,7 +32,7 @@ class BootChoice {
       }
       is_out[*slot - Slots::kFirstSlot] = true;
     }
-    // Better than nothing, whatever became of its slot.
+    // Starts it as a last resort, whatever the state of its slot.
     return slots_.is_whole(kProgram) ? BootResult::program : BootResult::nothing;
   }
 
@@ -51,7 +51,7 @@ class BootChoice {
 
   bool is_in_place(std::size_t slot) const { return slots_.running_slot() == slot && slots_.is_whole(kProgram); }
 
-  /// The number goes first: where the image is whole, its number is there too.
+  /// The number is written first, so that a complete image always has its number.
   bool copy(std::size_t slot) {
     if (!slots_.is_whole(slot)) return false;
     if (flash_.erase(kProgram) != hal::FlashResult::ok || !slots_.put_number(kProgram, *slots_.number(slot)))

@@ -1,4 +1,5 @@
-// The flash of programs: the place where one runs, two slots that keep images for it, and the words that say which.
+// The flash for programs: the place where a program runs, two slots that keep images for it, and the words with their
+// states.
 #pragma once
 
 #include <algorithm>
@@ -13,24 +14,24 @@
 
 namespace firmware {
 
-/// Words behind the image at the end of each sector, programmed one by one. A slot has all of them; the place where the
-/// program runs has the number alone, of the slot that it was copied from, and none of it after `axistool flash`.
+/// Words after the image at the end of each sector, programmed one by one. A slot has all of them. The program's place
+/// has only the number, that of the slot from which it was copied; after `axistool flash` it has none.
 struct SlotMarks {
-  std::uint32_t number = 0;    ///< of the update, counted from 1: the higher one is newer
-  std::uint32_t inverse = 0;   ///< ~number: half a number is no number
+  std::uint32_t number = 0;    ///< of the update, counted from 1; a higher number is newer
+  std::uint32_t inverse = 0;   ///< ~number: shows a partly programmed number
   std::uint32_t complete = 0;  ///< kValidMark once the whole image has been verified: offered to the boot code
-  std::uint32_t tried = 0;     ///< anything but kNotProgrammed once the boot code has started it
+  std::uint32_t tried = 0;     ///< differs from kNotProgrammed once the boot code has started it
   std::uint32_t healthy = 0;   ///< kValidMark once a run of it has reported that it is healthy
   std::array<std::uint32_t, 3> reserved{};
 };
 static_assert(sizeof(SlotMarks) == 32 && std::is_trivially_copyable_v<SlotMarks>);
 
-/// Numbers are permanent: they go over the wire.
+/// Numbers are permanent, because replies contain them.
 enum class SlotState : std::uint8_t {
   empty = 0,       ///< erased
-  incomplete = 1,  ///< being written, or left so by a power cut
+  incomplete = 1,  ///< being written, or interrupted by a power cut
   offered = 2,     ///< whole; the boot code starts it at the next reset
-  tried = 3,       ///< was started, and has not reported that it is healthy: on trial while it runs, failed afterwards
+  tried = 3,       ///< was started but has not reported that it is healthy: on trial while it runs, failed afterwards
   healthy = 4,
 };
 
@@ -43,7 +44,7 @@ class ImageSlots {
 
   explicit constexpr ImageSlots(Flash& flash) : flash_(flash) {}
 
-  /// Bytes that an image may have.
+  /// Largest size of an image, bytes.
   std::size_t capacity() const { return flash_.sector_size() - sizeof(SlotMarks); }
 
   std::span<const std::byte> memory(std::size_t sector) const { return flash_.view(sector).first(capacity()); }
@@ -54,7 +55,7 @@ class ImageSlots {
     return marks;
   }
 
-  /// The number of a sector; nothing where it has none, or a power cut left half of one.
+  /// The number of a sector; empty if it has none, or only a partly programmed one.
   std::optional<std::uint32_t> number(std::size_t sector) const {
     const SlotMarks found = marks(sector);
     return found.number == ~found.inverse ? std::optional(found.number) : std::nullopt;
@@ -70,14 +71,14 @@ class ImageSlots {
     return is_blank ? SlotState::empty : SlotState::incomplete;
   }
 
-  /// The boot code may start it: it is whole, and has not failed.
+  /// Whether the boot code may start it: it is complete and has not failed.
   bool is_usable(std::size_t slot) const {
     const SlotMarks found = marks(slot);
     return number(slot) && found.complete == kValidMark &&
            (found.healthy == kValidMark || found.tried == kNotProgrammed);
   }
 
-  /// The slot that the program was copied from: by its number, and by the checksum in both headers.
+  /// The slot from which the program was copied, found by its number and by the checksum in both headers.
   std::optional<std::size_t> running_slot() const {
     const auto wanted = number(kProgram);
     for (std::size_t slot = kFirstSlot; wanted && slot < kFirstSlot + kSlots; ++slot)
@@ -86,13 +87,13 @@ class ImageSlots {
     return std::nullopt;
   }
 
-  /// The program's place was written by `axistool flash`, not by the boot code: then the slots do not count.
+  /// `axistool flash`, not the boot code, wrote the program's place: then the slots are not used.
   bool is_program_flashed() const {
     const SlotMarks found = marks(kProgram);
     return found.number == kNotProgrammed && found.inverse == kNotProgrammed;
   }
 
-  /// As it lies there, whatever it is worth.
+  /// The header as stored, without checks.
   ImageHeader header(std::size_t sector) const {
     ImageHeader header;
     std::memcpy(&header, flash_.view(sector).data() + kImageHeaderOffset, sizeof header);
@@ -112,7 +113,7 @@ class ImageSlots {
     return highest;
   }
 
-  /// False where the flash does not take it, or it reads back differently.
+  /// False if the flash fails, or reads back differently.
   bool put_number(std::size_t sector, std::uint32_t number) {
     return put(sector, offsetof(SlotMarks, number), number) && put(sector, offsetof(SlotMarks, inverse), ~number);
   }

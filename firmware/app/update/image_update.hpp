@@ -1,4 +1,4 @@
-// A new image, taken by the running program block by block into the slot that it does not run from.
+// Receives a new image block by block into the slot that does not hold the running program.
 #pragma once
 
 #include "firmware/app/protocol/update_messages.hpp"
@@ -8,25 +8,26 @@ namespace firmware {
 
 enum class UpdateResult : std::uint8_t { ok, flash_failed, not_verified, bad_image, out_of_order };
 
-/// Only its own sectors are written, and never the program's place but for its number. The running image stays in its
-/// slot, healthy, so that it can return; the new one is offered to the boot code by its last word. Each step stalls the
-/// processor for at most one erase, through `stalled`, which is called with what is to be done meanwhile.
+/// Writes only the slots' sectors, and in the program's place only the number. The running image stays in its slot,
+/// marked as healthy, so that it can return. The last word that is written offers the new image to the boot code. Each
+/// step stalls the processor for at most one erase, through `stalled`, which is called with the work to be done
+/// meanwhile.
 template <hal::Flash Flash>
 class ImageUpdate {
  public:
-  /// `own`: the header of the image that runs; what is for another board or chip is refused.
+  /// `own`: the header of the running image; an image for another board or chip is refused.
   constexpr ImageUpdate(Flash& flash, const ImageHeader& own) : flash_(flash), slots_(flash), own_(own) {}
 
   const ImageSlots<Flash>& slots() const { return slots_; }
   const ImageHeader& own() const { return own_; }
 
-  /// The program that runs was started for the first time, and an older image would return.
+  /// The running program was started for the first time, and without confirmation an older image returns.
   bool is_on_trial() const {
     const auto running = slots_.running_slot();
     return running && slots_.state(*running) == SlotState::tried && slots_.is_usable(other_than(*running));
   }
 
-  /// The program that runs stays.
+  /// Makes the running program permanent.
   template <typename Stalled>
   UpdateResult confirm(Stalled stalled) {
     const auto running = slots_.running_slot();
@@ -34,7 +35,7 @@ class ImageUpdate {
     return stalled([&] { return slots_.mark_healthy(*running); }) ? UpdateResult::ok : UpdateResult::flash_failed;
   }
 
-  /// Empties the other slot. Where the running image is in none, as after `axistool flash`, it is copied to one first.
+  /// Erases the other slot. If the running image is in no slot, as after `axistool flash`, copies it to one first.
   template <typename Stalled>
   UpdateResult begin(const BeginUpdateRequest& announced, ImageRefusal& refusal, Stalled stalled) {
     is_receiving_ = false;
@@ -63,7 +64,7 @@ class ImageUpdate {
     return UpdateResult::ok;
   }
 
-  /// Offers the image to the boot code, if it is the announced one as a whole. The update is over either way.
+  /// Offers the image to the boot code if it is complete and the announced one. The update is over in either case.
   template <typename Stalled>
   UpdateResult finish(ImageRefusal& refusal, Stalled stalled) {
     if (!is_receiving_) return UpdateResult::out_of_order;
@@ -106,12 +107,12 @@ class ImageUpdate {
     return is_announced ? ImageRefusal::none : ImageRefusal::not_announced;
   }
 
-  /// Healthy, as the newest: only then does the program's place get its number, and with it the slots count.
+  /// Marks it as healthy and newest before the program's place gets its number, from which on the slots are used.
   template <typename Stalled>
   UpdateResult keep_running(Stalled stalled) {
     constexpr std::size_t kKeeper = Slots::kFirstSlot;
     if (!slots_.is_whole(Slots::kProgram)) return UpdateResult::not_verified;
-    const auto present = slots_.number(Slots::kProgram);  // where its slot was damaged meanwhile
+    const auto present = slots_.number(Slots::kProgram);  // in case its slot was damaged meanwhile
     const std::uint32_t number = present.value_or(slots_.highest_number() + 1);
     const auto image = flash_.view(Slots::kProgram).first(rounded_up(slots_.header(Slots::kProgram).image_size));
     if (stalled([&] { return flash_.erase(kKeeper); }) != hal::FlashResult::ok) return UpdateResult::flash_failed;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kTimer2Function = 1, kTimer4Function = 2, kTimer5Function = 2, kSpi1Function = 5,
                         kUsart1Function = 7, kUsbFunction = 10;
 
-/// What the chip lacks until its option bytes are written (front-end.md).
+/// Brown-out reset, which is off until the chip's option bytes are written (front-end.md).
 constexpr std::uint32_t kBrownOutWanted = 270;
 
 constexpr const char* name_of(hal::ConverterState state) {
@@ -32,7 +32,7 @@ constexpr const char* name_of(hal::ConverterState state) {
 }
 
 void connect_pins() {
-  pins::dac_not_clear().make_output(false);  // the converter's own way to 0 V, whatever it holds
+  pins::dac_not_clear().make_output(false);  // sets the converter's outputs to 0 V, whatever its registers hold
   for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y()}) pin.make_output(false);
   for (const Pin& pin : {pins::encoder_x_a(), pins::encoder_x_b(), pins::encoder_x_index()})
     pin.make_alternate(kTimer2Function, Pull::up);
@@ -122,7 +122,7 @@ void Board::watch(bool outputs_off) {
   usb_.attach(vbus_.is_present(now_periods, control_rate_Hz_ / 10));  // 100 ms
   if (now_periods - watched_at_period_ < control_rate_Hz_ / kWatches_Hz) return;
   watched_at_period_ = now_periods;
-  const ControlShutOut guard;  // 9 us: two frames of the converter that nobody may come between
+  const ControlShutOut guard;  // 9 us: two frames of the converter that must not be interrupted
   if (converter_.state() == hal::ConverterState::sound) {
     converter_.watch();
     if (converter_.state() != hal::ConverterState::sound) converter_trouble_ = converter_.state();

@@ -1,4 +1,4 @@
-// The periphery of the axis board, and the two axes' hardware interface on it.
+// The peripherals of the axis board, and the hardware interface of its two axes.
 #pragma once
 
 #include "firmware/boards/axis-f405/pins.hpp"
@@ -31,13 +31,13 @@ namespace firmware::boards {
 
 using Converter = hal::Ad5752<hal::stm32f4::SpiPort>;
 
-/// One axis's share of the board. A sensor that `core` asks for by a concept of its own is a part more: here, in the
-/// constructor, among the accessors, and in both of the wirings below.
+/// The board's hardware for one axis. A sensor with a concept of its own in `core` is a further member: add it here, in
+/// the constructor, to the accessors, and to both wirings below.
 class BoardAxisHal {
  public:
   struct Wiring {
     hal::stm32f4::Timer& encoder;
-    std::uint32_t probe_trigger;  ///< as of EncoderTimer
+    std::uint32_t probe_trigger;  ///< as for EncoderTimer
     const hal::stm32f4::TachometerSamples& samples;
     std::uint32_t tachometer_channel;
     Converter::Channel& dac;
@@ -85,30 +85,31 @@ class Board {
   /// or the converter does not start; the board must then stay disabled.
   bool start();
 
-  /// Starts the watchdogs: one wants food from the background every 50 ms from now on, the other from the control
-  /// interrupt at its rate.
+  /// Starts the watchdogs. From now on the background must feed one every 50 ms, and the control interrupt the other at
+  /// its rate.
   void start_watchdogs();
   void feed_watchdog() { watchdog_.feed(); }
 
   /// 250 Hz to 20 kHz; before start_control(), or at any time after.
   void set_control_rate(std::uint32_t rate_Hz);
-  /// Converts the tachometers and calls the control interrupt from now on.
+  /// Starts the conversion of the tachometers and the control interrupt.
   void start_control();
-  /// Shows the board to the computer at its other end. False when the controller does not answer.
+  /// Connects the board to USB. False if the controller does not answer.
   bool start_usb();
   /// First thing in the control interrupt.
   void acknowledge_control();
-  /// Last thing in it. The charge pump outside gets its beat only while all is alive.
+  /// Last thing in it. Drives the external charge pump only while the program works.
   void control_has_run(bool all_is_alive);
   /// The converter's interrupt.
   void recover_conversions() { scan_.recover_from_overrun(); }
 
-  /// The background's share: connects to a computer that is there, reads the D/A converter back, a register at a time,
-  /// and starts it anew while the outputs are off.
+  /// Work of the background: connects to a computer if one is present, reads the D/A converter back, one register at a
+  /// time, and restarts it while the outputs are off.
   void watch(bool outputs_off);
-  /// Its option bytes are as delivered: between 2.7 V and its end the chip may do anything, erase its flash among it.
+  /// Whether the option bytes are as delivered. Then the chip may do anything while its supply falls below 2.7 V, even
+  /// erase its flash.
   bool lacks_brown_out_reset() const;
-  /// What a builder should know: option bytes, converter, overruns.
+  /// Report for whoever builds the board: option bytes, converter, overruns.
   void report(TextWriter<Serial>& out) const;
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
@@ -172,7 +173,7 @@ class Board {
   hal::stm32f4::RelayOutput power_relay_{pins::power_relay()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer13()};
-  hal::stm32f4::ProbeTimer probe_{hal::stm32f4::timer4(), pins::probe()};  ///< timers 2 and 5 know it as a trigger
+  hal::stm32f4::ProbeTimer probe_{hal::stm32f4::timer4(), pins::probe()};  ///< trigger input of timers 2 and 5
   hal::stm32f4::VbusInput vbus_{pins::usb_supply()};
   hal::stm32f4::ChargePump pump_{pins::charge_pump()};
   hal::stm32f4::ControlTimer control_timer_{hal::stm32f4::timer3()};
@@ -195,7 +196,7 @@ class Board {
 
 static_assert(hal::Board<Board>);
 
-/// What the chip's reset flags say (RM0090, 7.3.21); clears them.
+/// Reads and clears the chip's reset flags (RM0090, 7.3.21).
 ResetCause read_reset_cause();
 
 }  // namespace firmware::boards

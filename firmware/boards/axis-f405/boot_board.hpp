@@ -1,4 +1,5 @@
-// What the boot code needs of the axis board: its flash and its watchdog. Clocks and pins stay as reset leaves them.
+// The parts of the axis board that the boot code needs: flash and watchdog. Clocks and pins keep their state after
+// reset.
 #pragma once
 
 #include "hal/stm32f4/chip_flash.hpp"
@@ -12,9 +13,9 @@ class BootBoard {
 
   hal::stm32f4::ImageFlash& image_flash() { return flash_; }
 
-  /// The watchdog resets a program that hangs before it has set it up itself.
+  /// The watchdog resets a program that hangs before it configures the watchdog itself.
   void watch_trial() {
-    constexpr std::uint32_t kTrial_ms = 30'000;  // 20 to 56 s by its oscillator, and no start takes 5
+    constexpr std::uint32_t kTrial_ms = 30'000;  // 20 to 56 s, due to its oscillator; every start takes less than 5 s
     hal::stm32f4::Watchdog(hal::stm32f4::independent_watchdog()).start(kTrial_ms);
   }
 

@@ -1,4 +1,4 @@
-// Where everything is connected: the pin table of README.md in code.
+// Pin assignment: the pin table of README.md in code.
 #pragma once
 
 #include "hal/stm32f4/pin.hpp"

@@ -1,5 +1,5 @@
-// From reset to the program: boot code, the first in flash. It chooses the image, puts it where programs run, and
-// starts it. AXIS_BOOT_BOARD names the header of the board's folder; it declares firmware::boards::BootBoard.
+// Boot code, the first code in flash: chooses the image, copies it to the program's place, and starts it.
+// AXIS_BOOT_BOARD names the header of the board's folder; it declares firmware::boards::BootBoard.
 #include <array>
 #include <cstdint>
 
@@ -32,7 +32,7 @@ constexpr BootVectors make_boot_vectors() {
 
 [[gnu::section(".vectors"), gnu::used]] constinit const BootVectors vectors = make_boot_vectors();
 
-/// Its reset handler sets everything else up.
+/// The program's reset handler does all further initialisation.
 [[noreturn]] void start_program(std::uintptr_t vectors_of_program) {
   const auto* const entries = reinterpret_cast<const std::uint32_t*>(vectors_of_program);
   const std::uint32_t entry = entries[1];
@@ -42,7 +42,7 @@ constexpr BootVectors make_boot_vectors() {
 
 }  // namespace
 
-/// Starts anew: what a copy left half done is done again.
+/// Restarts: an incomplete copy is repeated.
 extern "C" [[gnu::used, noreturn]] void boot_fault() {
   hal::cortex_m::system_control().AIRCR = hal::cortex_m::SystemControl::kResetRequest;
   for (;;) asm volatile("" ::: "memory");
@@ -61,10 +61,10 @@ extern "C" [[gnu::used, noreturn]] void boot_program() {
     case firmware::BootResult::program:
       start_program(BootBoard::kProgram);
   }
-  for (;;) asm volatile("wfi" ::: "memory");  // nothing to start: outputs stay as reset left them, safe
+  for (;;) asm volatile("wfi" ::: "memory");  // nothing to start: outputs keep their safe state after reset
 }
 
-/// A boot ROM's loader may come here with interrupts on and a stack anywhere.
+/// A boot ROM's loader may jump here with interrupts enabled and any stack.
 extern "C" [[gnu::naked, gnu::used]] void boot_entry() {
   asm volatile(
       "cpsid i                   \n"

@@ -10,7 +10,7 @@ namespace {
 
 using hal::cortex_m::SysTick;
 
-// Lines of the interrupt controller that no device of the machine has.
+// Lines of the interrupt controller that no device of the machine uses.
 constexpr std::uint32_t kControlLine = 29, kConverterLine = 30, kUsbLine = 31;
 
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
@@ -63,7 +63,7 @@ void Board::period_ends() {
   passed_ticks_ = passed_ticks_ + hal::cortex_m::sys_tick().RVR + 1;
   if (usb_.has_frames()) ask_for_interrupt(kUsbLine);
   if (knows_computer_ && computer_time_us_ - clock_.us < period_us_) {
-    watchdog_.feed();  // its clock is the board's, which stands still
+    watchdog_.feed();  // it uses the board's clock, which stands still
     return;
   }
   if (!timer_runs_) return;
@@ -74,7 +74,7 @@ void Board::period_ends() {
   ask_for_interrupt(kControlLine);
 }
 
-/// Here the period begins: an emulator that was late may end two of the timer's in a row.
+/// The period begins here, because a late emulator may end two of the timer's periods in a row.
 void Board::acknowledge_control() {
   clock_.us = clock_.us + period_us_;
   for (std::size_t i = 0; i < kAxes; ++i) {
@@ -94,7 +94,7 @@ void Board::take_computer_time() {
   knows_computer_ = true;
 }
 
-/// The computer has better to do than to emulate a processor that waits.
+/// Saves the computer's time: a waiting processor need not be emulated.
 void Board::watch(bool) {
   constexpr unsigned kRounds = 4;
   while (!background_runs_) continue;
@@ -150,7 +150,7 @@ void make_outputs_safe() noexcept {}  // this board has no outputs
 
 extern "C" void period_ends() { firmware::boards::board.period_ends(); }
 
-/// The watchdog's first time-out. Nothing may save the board now: with interrupts shut out, its second one resets.
+/// The watchdog's first time-out. With interrupts disabled, nothing feeds it, and its second time-out resets the board.
 extern "C" void watchdog_warning() {
   firmware::boards::make_outputs_safe();
   for (;;) asm volatile("" ::: "memory");

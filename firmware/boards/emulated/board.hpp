@@ -1,6 +1,6 @@
-// The board as QEMU's mps2-an386 has it: processor, FPU, MPU, interrupt controller, a serial port, a watchdog that
-// resets. What that machine lacks is here: the timer, converter and USB controller that ask for interrupts, the drives,
-// and a bench that breaks things on request.
+// The board in QEMU's mps2-an386, which has processor, FPU, MPU, interrupt controller, a serial port, and a watchdog
+// that resets. This file adds what that machine lacks: timer, converter and USB controller with their interrupts, the
+// drives, and a bench that causes faults on request.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@
 
 namespace firmware::boards {
 
-/// The emulated UART sends at once; this line takes as long for a character as one at 115200 baud does. Capital letters
-/// are not for the program: they ask the bench for what the board's surroundings do.
+/// The emulated UART sends at once; this line needs as long for a character as one at 115200 baud. Capital letters are
+/// not for the program: they are commands to the bench.
 class BenchLine {
  public:
   /// Processor clocks since start.
@@ -91,14 +91,14 @@ class Board {
   using ControlShutOut = hal::cortex_m::ControlShutOut;
   using Serial = hal::SerialQueue<BenchLine, 2048>;
 
-  /// No button is wired.
+  /// No stop button is wired.
   struct Stop {
     bool is_pressed() const { return false; }
   };
   struct Supply {
     bool is_low() const { return false; }
   };
-  /// A control period is its step: nothing here is quicker.
+  /// Its resolution is a control period; nothing here needs a finer one.
   struct Clock {
     volatile std::uint32_t us = 0;  ///< at the control interrupt's last start
     std::uint32_t now_us() const { return us; }
@@ -144,16 +144,16 @@ class Board {
   void restart() { reset_processor(); }
   void show(bool running, bool fault) { lamps_ = (running ? 1u : 0u) | (fault ? 2u : 0u); }
 
-  /// The machine's only timer: what the chip's timer, converter and USB controller do at the end of a period.
+  /// The machine's only timer: acts for the chip's timer, converter and USB controller at the end of a period.
   void period_ends();
-  /// What a capital letter asks for.
+  /// Carries out the command of a capital letter.
   void obey(char letter);
 
  private:
   static constexpr std::uint32_t kClock_Hz = 25'000'000;           // AN386: processor and watchdog
   static constexpr std::uint32_t kWatchdogTicks = kClock_Hz / 20;  // resets after twice 50 ms
-  /// Two emulators have two times, and either may pass the slower: the board's goes on only as far as the computer's
-  /// has, and as long as a computer that is the quicker may have to wait for it.
+  /// The two emulators have different times, and either may be slower. The board's time advances only as far as the
+  /// computer's, so a faster computer may have to wait for it.
   static constexpr std::uint32_t kMostBehind_us = 20'000;
 
   static std::uint32_t ticks();
@@ -177,7 +177,7 @@ class Board {
 };
 static_assert(hal::Board<Board>);
 
-/// The chip has no reset flags: the survival record tells.
+/// The chip has no reset flags, so the survival record gives the cause.
 inline ResetCause read_reset_cause() { return ResetCause::unknown; }
 
 }  // namespace firmware::boards

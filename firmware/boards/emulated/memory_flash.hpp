@@ -1,4 +1,4 @@
-// Flash in RAM that start-up leaves alone: it outlives a reset, as flash does, but not the emulator.
+// Flash in RAM that start-up does not initialise: it survives a reset, as flash does, but not the emulator's end.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@ class MemoryFlashOf {
  public:
   static constexpr std::size_t kSectors = 4, kSectorSize = size, kProgramSize = 4;
 
-  /// What lies in the memory; an object of static storage in .noinit.
+  /// Contents of the memory; an object of static storage in .noinit.
   struct Cells {
     std::uint32_t magic;
     std::array<std::array<std::byte, kSectorSize>, kSectors> sectors;
   };
 
-  /// Erased unless the memory has been one before.
+  /// Erased, unless the memory already contains such a flash.
   explicit MemoryFlashOf(Cells& cells) : cells_(cells) {
     constexpr std::uint32_t kMagic = 0x464C5348;
     if (cells_.magic == kMagic) return;

@@ -1,4 +1,4 @@
-// Faults on purpose, to show that they are recorded.
+// Deliberate faults, to test that they are recorded.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace firmware::boards {
 
-/// Writes where nothing is.
+/// Writes to an address without memory.
 inline void provoke_bus_fault() { *reinterpret_cast<volatile std::uint32_t*>(0xA0000000u) = 1; }
 
-/// Reads a member of what a null pointer points to.
+/// Reads a member through a null pointer.
 inline void provoke_null_read() {
   volatile std::uintptr_t null = 0;
   static_cast<void>(*reinterpret_cast<volatile std::uint32_t*>(null + 8));
@@ -31,7 +31,7 @@ inline void provoke_division_by_zero() {
   return deeper + frame[depth % 32];
 }
 
-/// Asks for an interrupt that nothing here serves.
+/// Requests an interrupt without a handler.
 inline void provoke_unexpected_interrupt() {
   constexpr std::uint32_t kUnused = 24;
   *reinterpret_cast<volatile std::uint32_t*>(0xE000E100u + 4 * (kUnused / 32)) = 1u << (kUnused % 32);

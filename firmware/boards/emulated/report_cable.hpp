@@ -1,5 +1,5 @@
-// A cable for reports over a byte stream, for a processor whose USB controller is not emulated. The board holds one
-// end; the other belongs to a program that has the controller, and tells the board what the bus does.
+// A cable for reports over a byte stream, for a processor whose USB controller is not emulated. One end belongs to the
+// board, the other to a program that has the controller and reports the state of the bus to the board.
 #pragma once
 
 #include <cstring>
@@ -12,21 +12,21 @@
 
 namespace firmware::boards {
 
-/// First byte of each frame's payload; it is all of it but in `report`, where the report follows.
+/// First byte of each frame's payload, and the only one except in `report`, where the report follows.
 enum class CableMessage : std::uint8_t {
-  hello = 'H',         ///< from the board, when its receiver is on: whatever was on its way is void
+  hello = 'H',         ///< from the board, when its receiver is on: earlier frames are void
   configured = 'C',    ///< to the board
   unconfigured = 'U',  ///< to the board
   report = 'R',
-  taken = 'T',  ///< the receiver's program has taken a report: there is room for another
-  time = 'M',   ///< to the board: microseconds that have passed for the computer since the last, u32
+  taken = 'T',  ///< the receiver's program has taken a report, so there is room for another
+  time = 'M',   ///< to the board: computer time since the last such frame, us, u32
 };
 
-/// Reports for which each end has room. The computer has many more: its own programs may rest while the board's time
-/// runs on; these are 65 s of a report each control period at 1 kHz.
+/// Number of reports for which each end has room. The computer has much more, because its programs may pause while the
+/// board's time continues: 65 s of one report per control period at 1 kHz.
 inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 65536;
 
-/// One end. It sends as many reports as the other has room for, so none is lost and no end ever waits.
+/// One end. It sends only as many reports as the other has room for, so none is lost and neither end waits.
 template <hal::SerialPort Port, std::size_t own_room, std::size_t other_room>
 class ReportCable {
  public:
@@ -34,18 +34,18 @@ class ReportCable {
 
   /// For the board, once, when its receiver is on.
   void say_hello() { tell(CableMessage::hello); }
-  /// For the computer: what has become of the bus.
+  /// For the computer: the present state of the bus.
   void set_configured(bool configured) {
     begin_anew(configured);
     tell(configured ? CableMessage::configured : CableMessage::unconfigured);
   }
-  /// For the computer: what its clock has gone on by.
+  /// For the computer: time by which its clock has advanced.
   void pass_time(std::uint32_t passed_us) {
     std::array<std::byte, 1 + sizeof passed_us> payload{static_cast<std::byte>(CableMessage::time)};
     std::memcpy(payload.data() + 1, &passed_us, sizeof passed_us);
     tell(payload);
   }
-  /// For the board: that time, since it was last asked for.
+  /// For the board: that time since the last call.
   std::uint32_t take_passed_us() { return std::exchange(passed_us_, 0u); }
   /// For the computer: true once after each start of the board.
   bool heard_hello() {
@@ -54,9 +54,9 @@ class ReportCable {
     return heard;
   }
 
-  /// Takes in what has arrived; call it often. False when there was nothing.
+  /// Processes the bytes that have arrived; call it often. False if there were none.
   bool poll() {
-    constexpr int kMostBytes = 256;  // a round of the background stays short
+    constexpr int kMostBytes = 256;  // keeps a round of the background short
     std::byte byte{};
     int taken = 0;
     for (; taken < kMostBytes && port_.receive(byte); ++taken)

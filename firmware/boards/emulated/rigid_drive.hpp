@@ -1,5 +1,4 @@
-// The paper's drive as the emulated board has it: one mass, viscous and Coulomb friction, an encoder's counts, a
-// tachometer with noise.
+// The paper's drive on the emulated board: one mass, viscous and Coulomb friction, an encoder, a tachometer with noise.
 #pragma once
 
 #include <cmath>
@@ -7,10 +6,10 @@
 
 namespace firmware::boards {
 
-/// Values of tests/data/drive-cases/none/case-00/model.toml; the converters as the host's simulated board has them.
+/// Values of tests/data/drive-cases/none/case-00/model.toml; converters as in the host's simulated board.
 class RigidDrive {
  public:
-  /// With the D/A converter at `code`; without current where it is not enabled.
+  /// With the D/A converter at `code`; without current if it is not enabled.
   void advance(float duration_s, std::int32_t code, bool is_enabled) {
     constexpr int kParts = 4;
     const float part_s = duration_s / kParts;
@@ -25,7 +24,7 @@ class RigidDrive {
 
   std::uint32_t counts() const { return static_cast<std::uint32_t>(position_ >> 32); }
   std::int32_t tachometer_code() {
-    // The sum of four even numbers is as good as normal; its deviation is 1 / sqrt(3).
+    // The sum of four uniform random numbers is nearly normal; its standard deviation is 1 / sqrt(3).
     float sum = -2.0F;
     for (int i = 0; i < 4; ++i) {
       noise_ = noise_ * 1664525u + 1013904223u;
@@ -41,8 +40,7 @@ class RigidDrive {
   static constexpr float kCountsPerRad = 1.5915494F / 0.00244140625F;
   static constexpr float kTachometerNoise = 0.08888194F;  ///< rad/s
 
-  /// From rest it breaks away where the effort exceeds the friction; in a part in which it comes to rest it stays
-  /// there.
+  /// From rest it breaks away if the effort exceeds the friction; if it comes to rest within a part, it stays at rest.
   void move(float effort, float part_s) {
     const bool is_forward = speed_ > 0.0F || (speed_ == 0.0F && effort > 0.0F);
     const float friction = is_forward ? kForward : kBackward;

@@ -1,4 +1,4 @@
-// The number type that this image's control core computes in.
+// The number type of this image's control core.
 #pragma once
 
 #ifdef AXIS_SCALAR_FIXED

@@ -1,4 +1,5 @@
-// The RAM that the program does not need: for triggered captures. Start-up leaves it alone, so a reset does, too.
+// The RAM that the program does not need, for triggered captures. Start-up does not initialise it, so it survives a
+// reset.
 #pragma once
 
 #include <span>

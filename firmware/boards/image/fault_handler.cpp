@@ -17,7 +17,7 @@ namespace firmware::boards {
 namespace {
 
 constexpr std::uint32_t kStackGuardLog2 = 8;  // 256 bytes, as in sections.ld
-constexpr std::uint32_t kNullLog2 = 20;       // 1 MB from address 0, where the STM32F405 shows its flash once more
+constexpr std::uint32_t kNullLog2 = 20;       // 1 MB from address 0, where the STM32F405 has an alias of its flash
 constexpr std::uint32_t kFrameWords = 8;      // r0-r3, r12, lr, pc, xpsr: ARMv7-M ARM, B1.5.6
 
 bool in_guard(std::uint32_t address) {
@@ -42,7 +42,7 @@ void arm_fault_detection() {
   mpu.RNR = 0;
   mpu.RBAR = reinterpret_cast<std::uint32_t>(_stack_guard);
   mpu.RASR = Mpu::size_field(kStackGuardLog2) | Mpu::kRegionEnable;
-  // Whatever reads through a null pointer is found, where no image lies there.
+  // Detects reads through a null pointer, if no image lies at address 0.
   if (reinterpret_cast<std::uint32_t>(_image_start) >= 1u << kNullLog2) {
     mpu.RNR = 1;
     mpu.RBAR = 0;
@@ -61,8 +61,8 @@ void reset_processor() {
 
 }  // namespace firmware::boards
 
-/// `stack`: the stack pointer at the fault; `callee`: r4 to r11. Runs on a stack of its own, because the fault may be
-/// that the stack is full.
+/// `stack`: the stack pointer at the fault; `callee`: r4 to r11. Runs on its own stack, because a full stack may be the
+/// cause of the fault.
 extern "C" [[gnu::used, noreturn]] void record_fault(const std::uint32_t* stack, const std::uint32_t* callee,
                                                      std::uint32_t exc_return) {
   using namespace firmware::boards;

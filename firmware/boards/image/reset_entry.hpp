@@ -1,4 +1,4 @@
-// How the last run ended, as an entry of the fault log.
+// The end of the last run, as an entry of the fault log.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace firmware::boards {
 
-/// A program that fails again and again at its start would wear the flash.
+/// Limits wear of the flash by a program that fails repeatedly at its start.
 inline constexpr std::uint32_t kMostLoggedResets = 16;  ///< from power-on on
 
-/// Of a program that did not end as it should: by a processor fault, a watchdog or its supply.
+/// Entry for a run that ended by a processor fault, a watchdog or its supply.
 inline std::optional<LoggedFault> entry_of(const LastRun& last_run) {
   const bool is_bad = last_run.cause == ResetCause::fault || last_run.cause == ResetCause::watchdog ||
                       last_run.cause == ResetCause::brown_out;

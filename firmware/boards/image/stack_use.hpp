@@ -1,4 +1,4 @@
-// How much stack a run has used, by the paint that start-up left.
+// Stack use of a run, from the pattern that start-up has written.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ void fill(std::uint32_t* from, const std::uint32_t* end, std::uint32_t value) {
   while (from != end) *from++ = value;
 }
 
-/// Paints the stack below the caller's frame, so that its deepest use can be read later.
+/// Fills the stack below the caller's frame with a pattern, from which its deepest use can be read later.
 void paint_stack() {
   std::uint32_t* here = nullptr;
   asm volatile("mov %0, sp" : "=r"(here));
@@ -97,8 +97,8 @@ constexpr VectorTable make_vectors() {
 
 }  // namespace
 
-/// As after a reset, whatever ran before: a boot ROM's loader starts a program with its own vector table, and with
-/// interrupts enabled whose sources may still be alive (AN3156: the program has to set the vector table itself).
+/// Restores the state after a reset: a boot ROM's loader starts a program with the loader's vector table, and with
+/// enabled interrupts whose sources may still be active (AN3156: the program has to set the vector table itself).
 extern "C" [[gnu::used, noreturn]] void begin_program() {
   using namespace hal::cortex_m;
   sys_tick().CSR = 0;
@@ -116,8 +116,8 @@ extern "C" [[gnu::used, noreturn]] void begin_program() {
   start();
 }
 
-/// Interrupts out and the main stack at its top before anything else. Thumb-1 only, so that it also serves parts
-/// without Thumb-2.
+/// First disables interrupts and sets the main stack to its top. Thumb-1 only, so that it also serves parts without
+/// Thumb-2.
 extern "C" [[gnu::naked, gnu::used]] void reset_entry() {
   asm volatile(
       "cpsid i              \n"

@@ -1,4 +1,5 @@
-// What outlives a reset: why the last run ended, and what the axes did last. Lies in RAM that start-up leaves alone.
+// Data that survive a reset: why the last run ended, and the last state of the axes. In RAM that start-up does not
+// initialise.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ enum class FaultKind : std::uint32_t {
   usage_fault = 6
 };
 
-/// One axis as the last finished control period left it.
+/// State of one axis after the last finished control period.
 struct LastAxisState {
   std::int64_t encoder_counts = 0;
   std::int32_t dac_code = 0;
@@ -49,7 +50,7 @@ struct FaultRecord {
   std::array<std::uint32_t, 13> r{};       ///< r0 to r12
   std::uint32_t sp = 0, lr = 0, pc = 0, xpsr = 0;
   std::uint32_t frame_valid = 0;     ///< 0: the stack could not take r0-r3, r12, lr, pc, xpsr, and they are 0
-  std::uint32_t stack_overflow = 0;  ///< the stack had left its room, by a push or by an interrupt's frame
+  std::uint32_t stack_overflow = 0;  ///< the stack had overflowed, by a push or by an interrupt's frame
   std::uint32_t exc_return = 0;
   std::uint32_t cfsr = 0, hfsr = 0, mmfar = 0, bfar = 0;
   std::uint32_t outputs_made_safe = 0;  ///< D/A at 0 V and enables off before this record was written
@@ -58,19 +59,19 @@ struct FaultRecord {
 
 struct SurvivalRecord {
   std::uint32_t magic = 0;
-  std::uint32_t resets = 0;          ///< since power came on
+  std::uint32_t resets = 0;          ///< since power-on
   std::uint32_t ended_by_fault = 0;  ///< `fault` belongs to the run before this one
   std::uint32_t fault_crc = 0;
   FaultRecord fault{};
   LastState running{};  ///< kept up to date by the control interrupt
   std::uint32_t watchdog_armed = 0;
-  std::uint32_t reset_requested = 0;  ///< software asked for the reset that follows
+  std::uint32_t reset_requested = 0;  ///< software requested the reset that follows
 };
 
 /// The record in RAM; written by the fault handler and the control interrupt.
 SurvivalRecord& survival_record();
 
-/// How the run before this one ended, as start-up found it.
+/// How the previous run ended, as found at start-up.
 struct LastRun {
   ResetCause cause = ResetCause::unknown;
   bool survived = false;  ///< the record was there: RAM kept its contents
@@ -79,7 +80,7 @@ struct LastRun {
   LastState last{};
 };
 
-/// Reads the record and starts a new one. `hardware_cause`: what the chip's reset flags say, unknown if it has none.
+/// Reads the record and starts a new one. `hardware_cause`: from the chip's reset flags; unknown if it has none.
 LastRun take_over_survival_record(ResetCause hardware_cause);
 
 }  // namespace firmware::boards

@@ -1,4 +1,4 @@
-// The header of the running image, and whether flash holds it whole.
+// The header of the running image, and whether the image in flash is intact.
 #pragma once
 
 #include "firmware/app/image_header.hpp"
@@ -7,7 +7,7 @@ namespace firmware::boards {
 
 const ImageHeader& this_image();
 
-/// Reads all of the image: some 16 ms at 168 MHz.
+/// Reads the whole image: some 16 ms at 168 MHz.
 ImageState verify_this_image();
 
 }  // namespace firmware::boards

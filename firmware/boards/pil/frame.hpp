@@ -26,7 +26,7 @@ void send_frame(std::span<const std::byte> payload, Send send) {
   for (int shift = 0; shift < 32; shift += 8) send(static_cast<std::byte>((crc >> shift) & 0xFF));
 }
 
-/// Finds frames of up to `capacity` payload bytes in a stream. What does not pass its checks is skipped and counted.
+/// Finds frames of up to `capacity` payload bytes in a stream. Bytes that fail the checks are skipped and counted.
 template <std::size_t capacity>
 class FrameReceiver {
  public:

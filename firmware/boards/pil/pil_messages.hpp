@@ -1,4 +1,4 @@
-// What the plant's computer and the board exchange in processor-in-the-loop runs: 32-bit little-endian words.
+// Messages between the plant's computer and the board in processor-in-the-loop runs: 32-bit little-endian words.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct PilRequest {
 };
 inline constexpr std::uint32_t kPilEnd = 0xFFFFFFFF;
 
-/// Everything an axis puts out, remembers or reports, as bits.
+/// All outputs, states and reports of an axis, as bits.
 struct PilAxisReply {
   std::int32_t dac_code = 0;
   std::uint32_t dac_writes = 0;

@@ -1,4 +1,4 @@
-// The hardware interface of one axis as plain values: the caller supplies readings and takes the converter's words.
+// The hardware interface of one axis as plain values: the caller sets the readings and reads the converter's codes.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class ValueAxis {
     bool on = false;
     bool faulted = false;
     bool ready = true;         ///< while enabled
-    bool ready_stuck = false;  ///< then without an enable too
+    bool ready_stuck = false;  ///< remains ready without an enable
     bool brake_released = false;
     void set(bool value) { on = value; }
     bool is_faulted() const { return faulted; }

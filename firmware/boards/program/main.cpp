@@ -1,4 +1,4 @@
-// A board's background: protocol, supervision, service port. Nothing here waits: the watchdog gets its food in between.
+// A board's background: protocol, supervision, service port. Nothing here waits, so the watchdog is fed in time.
 #include "firmware/app/protocol/server.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
@@ -10,7 +10,7 @@ namespace firmware::boards {
 
 namespace {
 
-/// Shows the state of the axes; what acts on them runs in the control interrupt.
+/// Shows the state of the axes; only the control interrupt acts on them.
 void supervise() {
   bool fault = board.emergency_stop().is_pressed() || !application.store_is_usable();
   for (std::size_t i = 0; i < Application::kAxes; ++i)
@@ -20,8 +20,8 @@ void supervise() {
   liveness.supervisor_ran();
 }
 
-/// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time. The answer to the one
-/// before goes out first.
+/// Letters on the service port: 'r' repeats the boot report, 'u' prints the use of stack and time. The answer to an
+/// earlier letter is sent first.
 void serve(const LastRun& last_run, ImageState image) {
   board.serial().poll();
   std::byte letter{};
@@ -43,7 +43,7 @@ void serve(const LastRun& last_run, ImageState image) {
   }
 }
 
-/// For a board that cannot be trusted to control: outputs stay safe, the service port tells why.
+/// For a board that must not control: outputs stay safe, and the service port gives the reason.
 [[noreturn]] void stay_safe(const LastRun& last_run, ImageState image) {
   make_outputs_safe();
   for (;;) serve(last_run, image);

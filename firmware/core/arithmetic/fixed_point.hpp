@@ -126,7 +126,7 @@ struct ScalarTraits<Fixed<fraction_bits>> {
   static constexpr bool is_nan(Scalar) { return false; }
   static constexpr Scalar magnitude(Scalar value) { return value.raw() < 0 ? Scalar{} - value : value; }
 
-  /// A value at a limit of the range counts as one that did not fit.
+  /// A value at a limit of the range counts as out of range.
   static constexpr bool is_finite(Scalar value) {
     return value.raw() != Scalar::kMost && value.raw() != Scalar::kLeast;
   }

@@ -1,4 +1,4 @@
-// Hides the origin of a word from the compiler, where it then generates better code.
+// Hides the origin of a word from the compiler. Used where this makes the compiler generate better code.
 #pragma once
 
 #include <type_traits>

@@ -112,7 +112,7 @@ class PitchCorrection {
 
   constexpr Increment wanted() {
     if (position_.counts < stretch_.begin || position_.counts >= stretch_.end) find_stretch();
-    // Of the fraction of a count 16 bits are enough.
+    // 16 bits of the fraction of a count are enough.
     return stretch_.offset + stretch_.slope * (position_.counts - stretch_.begin) +
            (stretch_.slope >> 16) * (position_.fraction >> (kFractionBits - 16));
   }

@@ -16,7 +16,7 @@ struct BiquadParameters {
   bool on = false;
   bool is_low_pass = false;  ///< otherwise a notch
   Scalar a1{}, a2{}, a3{};   ///< a1 in (0, 1)
-  Scalar of_band{};          ///< of a notch: 2 damping (depth - 1), depth: what is left at its frequency
+  Scalar of_band{};          ///< of a notch: 2 damping (depth - 1); depth: gain at its frequency
 };
 
 inline constexpr std::size_t kControlFilters = 2;

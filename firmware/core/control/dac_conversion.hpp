@@ -10,7 +10,7 @@ namespace firmware {
 template <typename Scalar>
 struct DacWord {
   std::int32_t code = 0;
-  Scalar volts{};  ///< what the code puts out: code * resolution
+  Scalar volts{};  ///< output of the code: code * resolution
   bool saturated = false;
 };
 

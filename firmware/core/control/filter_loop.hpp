@@ -22,7 +22,7 @@ class FilterLoop {
     }
   }
 
-  /// As of BiquadParameters: s^2 + 2 damping s + 1 with s = delta / (g (2 + delta)), g = a2 / a1, is its denominator.
+  /// From BiquadParameters: s^2 + 2 damping s + 1 with s = delta / (g (2 + delta)), g = a2 / a1, is its denominator.
   constexpr void add(float a1, float a2, float of_band, bool is_low_pass) {
     const float g = a2 / a1, square = g * g;
     const float damped = (1.0f - a1) / a1 - square;  // 2 damping g

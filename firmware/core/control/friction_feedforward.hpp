@@ -33,10 +33,10 @@ struct FrictionPoint {
   Scalar level_V{}, slope_V_s_per_rad{};
 };
 
-/// Eq. (19) from a speed >= 0 on, in equal steps. An exponential decays by the same factor in each: a multiplication,
-/// where the function itself takes a division too, for which a processor without FPU has no time. Roundings add up:
-/// where the omegas are within a factor of fifty, 34 points are within 6e-7 of the level in float, within 1.1e-5 in
-/// fixed point.
+/// Eq. (19) from a speed >= 0 on, in equal steps. An exponential decays by the same factor in each step. That needs one
+/// multiplication; the function itself also needs a division, for which a processor without FPU has no time. Rounding
+/// errors add up: if the omegas are within a factor of fifty, 34 points are within 6e-7 of the level in float, within
+/// 1.1e-5 in fixed point.
 template <typename Scalar>
 class FrictionSteps {
  public:
@@ -76,8 +76,8 @@ class FrictionSteps {
 };
 
 /// The curve as cubic pieces with its values and slopes at their ends: narrow pieces up to eight times the smaller
-/// omega, where exp(-8) = 3e-4 of its exponential is left, wide ones up to sixteen times the larger, a straight line
-/// beyond, where exp(-16) = 1e-7 is left. A piece spans at most a quarter or half of the dominant omega, so its error
+/// omega, where exp(-8) = 3e-4 of its exponential remains; wide ones up to sixteen times the larger; a straight line
+/// beyond, where exp(-16) = 1e-7 remains. A piece spans at most a quarter or half of the dominant omega, so its error
 /// is at most h^4/384: 1.7e-4 of the level, half a step of the converter at 1 V. That holds for omegas within a factor
 /// of ten; at a factor of fifty the error is a thousandth of the level.
 template <typename Scalar>

@@ -16,11 +16,11 @@ enum class PoleProblem : std::uint8_t {
   slow,      ///< a mode that takes longer than kLongestMode_s, so that the error drifts away meanwhile
 };
 
-/// Of a pair of poles, as seen by the bilinear map s = (z - 1) / (z + 1), which is the damping of a continuous pair
-/// where the pair is slow against the sample rate.
+/// Least damping of a pair of poles, after the bilinear map s = (z - 1) / (z + 1). For a pair that is slow compared
+/// with the sample rate, it is the damping of the continuous pair.
 inline constexpr float kLeastDamping = 0.1f;
 /// A negative real pole, and the radius of a pair with a negative real part: after ten samples less than a fifth of
-/// such an oscillation may be left.
+/// such an oscillation may remain.
 inline constexpr float kFastestRinging = 0.85f;
 /// Four of the monitors' load time.
 inline constexpr float kLongestMode_s = 4.0f * kLoadTime_s;
@@ -90,7 +90,7 @@ constexpr PoleProblem check(const Quadratic& q, float least) {
   return q.constant < least * (q.linear - least) || q.linear < 2.0f * least ? PoleProblem::slow : PoleProblem::none;
 }
 
-/// The real root between z = -1 and z = 1, then the pair that is left. Forty halvings.
+/// The real root between z = -1 and z = 1 by forty bisections, then the remaining pair.
 constexpr PoleProblem check(const Cubic& c, float least) {
   float lower = -2.0f, upper = 0.0f;
   if (!(c.at(lower) < 0.0f && c.at(upper) > 0.0f)) return PoleProblem::unstable;

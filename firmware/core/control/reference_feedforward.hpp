@@ -37,9 +37,9 @@ constexpr ReferenceFeedforward<Scalar> backward_difference_feedforward(const Sta
 ///     x/v = (n1 z + n0) / (z^2 + d1 z + d0) = z^-1 N(z^-1) / D(z^-1),   N = n1 + n0 z^-1,  D = 1 + d1 z^-1 + d0 z^-2,
 ///     n1 = Bd1,  n0 = Ad12 Bd2 - Ad22 Bd1  (feedback leaves zeros where they are),
 ///     d1 = -(trace of Ad - Bd Kc),  d0 = its determinant.
-/// The zero -n0/n1 lies just inside -1 for a drive whose time constant is long against Ts: cancelling it would make the
-/// output ring at the Nyquist rate. So nothing is cancelled but D, and N is made to have no phase: with N(z) the same
-/// polynomial in z,
+/// The zero -n0/n1 lies just inside -1 for a drive whose time constant is long compared with Ts: cancelling it would
+/// make the output oscillate at the Nyquist frequency. So nothing is cancelled but D, and N is made to have no phase:
+/// with N(z) the same polynomial in z,
 ///     v(k) = D(z^-1) N(z) / N(1)^2 xref(k+1)   gives   x/xref = N(z) N(z^-1) / N(1)^2,
 /// which is real, positive and 1 at standstill: 1 - 2 n0 n1 (1 - cos(omega Ts)) / (n0 + n1)^2. It is a filter of four
 /// taps on xref(k+2) .. xref(k-1) with no memory of its own:

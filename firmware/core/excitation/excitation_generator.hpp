@@ -7,7 +7,7 @@
 namespace firmware {
 
 /// No division and no library call in next(); its loop is bounded by kExcitationEntries. Periodic kinds are exactly
-/// periodic: phases are whole numbers, and the lines of a multisine begin anew with each of its periods.
+/// periodic: phases are whole numbers, and the lines of a multisine restart with each of its periods.
 template <typename Scalar>
 class ExcitationGenerator {
  public:
@@ -29,7 +29,7 @@ class ExcitationGenerator {
     rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
   }
 
-  /// `turn`: the axis is leaving the box, or near its speed limit.
+  /// `turn`: the axis is leaving the box, or is near its speed limit.
   constexpr Scalar next(bool turn) {
     switch (plan_->kind) {
       case ExcitationKind::train:
@@ -56,7 +56,7 @@ class ExcitationGenerator {
  private:
   using Traits = ScalarTraits<Scalar>;
 
-  /// As many as a scalar holds.
+  /// Limited to the range of a scalar.
   static constexpr std::int32_t bounded(std::uint32_t samples) {
     constexpr std::uint32_t kMost = std::uint32_t{1} << 24;
     return static_cast<std::int32_t>(samples < kMost ? samples : kMost);

@@ -36,7 +36,7 @@ struct ExcitationEntry {
   std::uint32_t first = 0;   ///< samples; turns a sample
   std::uint32_t second = 0;  ///< phase
 };
-/// As many lines as the control interrupt has time for.
+/// Largest number of lines for which the control interrupt has time.
 inline constexpr std::size_t kExcitationEntries = 14;
 
 /// Sums of a few such distances fit 32 bits.

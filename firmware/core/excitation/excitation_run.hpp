@@ -184,11 +184,11 @@ class ExcitationRun {
   }
 
   /// The encoder shows at most a flicker under a command near the largest, for the plan's time. Before the first motion
-  /// the times add up; later they must be continuous, since the axis may hang in a cog or be shaken too fast to move.
-  /// An encoder that failed in motion looks the same. Without a tachometer to show that, a standstill that began more
-  /// abruptly than the axis ever changed its speed is doubted: then a command well above the one that moved the axis in
-  /// this direction may last only four times the longest silence so far. Weight, cogging and friction depend on the
-  /// direction.
+  /// the times add up; later they must be continuous, since cogging may hold the axis, or the command may change too
+  /// fast for it to move. An encoder that failed in motion looks the same. Without a tachometer to show that, a
+  /// standstill that began more abruptly than the axis ever changed its speed is doubted: then a command well above the
+  /// one that moved the axis in this direction may last only four times the longest silence so far. Weight, cogging and
+  /// friction depend on the direction.
   [[gnu::noinline]] constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
     Scalar& moved_by = last_value_ > Scalar(0) ? moved_forward_by_ : moved_backward_by_;
@@ -217,8 +217,8 @@ class ExcitationRun {
     return false;
   }
 
-  /// Travel that the tachometer shows and the encoder does not. An eighth of all travel is tolerated, so that the
-  /// tachometer's scale may be wrong by as much.
+  /// Travel that the tachometer shows but the encoder does not. An eighth of all travel is tolerated, so the
+  /// tachometer's scale may be wrong by an eighth.
   template <typename Telemetry>
   constexpr bool is_blind(const Telemetry& seen) {
     const Scalar travel = Traits::from_integer(seen.encoder_travel);
@@ -242,8 +242,8 @@ class ExcitationRun {
     waited_ = 0;
   }
 
-  /// The axis is so far out, or so fast, that it must reverse now. `is_turning()`: the present input already slows it
-  /// down, and the next might not.
+  /// Whether the axis is so far out, or so fast, that it must reverse now. `is_turning()`: the present input already
+  /// slows it down, but the next might not.
   template <typename IsTurning>
   constexpr bool must_turn(IsTurning is_turning) {
     const std::int32_t speed = magnitude(speed_);
@@ -365,22 +365,22 @@ class ExcitationRun {
   Scalar woken_by_{};                                   ///< the command that ended it
   Scalar moved_forward_by_{}, moved_backward_by_{};     ///< largest command that has ended a standstill
   std::int64_t start_ = 0;                              ///< counts
-  std::int32_t turned_at_ = 0;                          ///< where the axis last went the other way
+  std::int32_t turned_at_ = 0;                          ///< position of the last reversal
   std::int32_t way_ = 0;                                ///< from the start
   std::int32_t too_fast_ = 0, nearly_too_fast_ = 0;     ///< counts in kSpeedSamples
-  std::int32_t room_ = 0;                               ///< that a train or a ride may use
+  std::int32_t room_ = 0;                               ///< range that a train or a ride may use
   std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< ways
   std::size_t place_ = 0;
   std::int32_t speed_ = 0, speed_before_ = 0;  ///< counts in kSpeedSamples: the last, and those before
   std::int32_t farthest_ = 0, fastest_ = 0;
   std::int64_t sum_of_effects_ = 0;
-  std::int32_t slowest_ = 0;     ///< since it was told to turn round
+  std::int32_t slowest_ = 0;     ///< since the reversal was requested
   std::int32_t brake_from_ = 0;  ///< speed at which braking began
   Scalar last_value_{}, ride_{}, last_ride_{};
   std::array<Scalar, 2> earlier_value_{};
   Scalar unseen_{};  ///< counts
   Increment last_reference_ = 0;
-  bool is_abrupt_ = false, was_forward_ = false;  ///< how the standstill began; the command's direction in it
+  bool is_abrupt_ = false, was_forward_ = false;  ///< how the standstill began; direction of the command during it
   bool is_asked_ = false, is_requested_ = false, is_braking_ = false, brakes_forward_ = true;
   bool is_forward_ = true, turned_forward_ = true, may_turn_ = true;
 };

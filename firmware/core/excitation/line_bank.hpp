@@ -45,7 +45,7 @@ constexpr std::int32_t upper_product(std::int32_t a, std::int32_t b) {
 /// Each line turns by its angle a sample: with e = 2 sin(angle / 2), c -= e s and then s += e c gives s = sin of that
 /// frequency exactly, and c = cos half a sample earlier; rounding changes neither frequency nor amplitude as time goes
 /// on (the circle algorithm, HAKMEM item 149). Whole numbers of 2^-30 of the sum of all amplitudes: the same on every
-/// machine. A line's angle is within 2^-30 / cos(angle / 2) of what was asked for, below half a turn.
+/// machine. A line's angle is within 2^-30 / cos(angle / 2) of the requested one, below half a turn.
 template <typename Scalar>
 class LineBank {
  public:
@@ -64,7 +64,7 @@ class LineBank {
       const Turn earlier = entry.second - entry.first / 2;
       at_[i] = begin_[i] = pair(static_cast<std::int32_t>(size * sine_of_turn(entry.second) >> 31),
                                 static_cast<std::int32_t>(size * sine_of_turn(earlier + kQuarterTurn) >> 31));
-      // Half of a turn is as far as it can turn; what is beyond turns the other way.
+      // A line can turn by at most half a turn per sample; a larger angle turns the other way.
       const std::int64_t quarters =
           entry.first <= 2 * kQuarterTurn ? entry.first : (std::int64_t{1} << 32) - entry.first;
       constexpr std::int64_t kMost = (std::int64_t{1} << 31) - 1;
@@ -83,13 +83,13 @@ class LineBank {
       const std::int32_t cosine = second(at) - upper_product(half_step, sine) * 4;
       at = pair(sine + upper_product(half_step, cosine) * 4, cosine);
       sum += sine;
-      hide_origin(sum);  // else all sines are kept, and added in the end
+      hide_origin(sum);  // otherwise the compiler keeps all sines and adds them at the end
     };
     if (begins_anew) {
       for (const std::uint64_t at : at_) sum += first(at);
       at_ = begin_;
     } else {
-      // Each of them, in use or not: a loop would take longer.
+      // All lines, used or not, because a loop would take longer.
 #pragma GCC unroll 16
       for (std::size_t i = 0; i < half_step_.size(); ++i) {
         turn(at_[2 * i], first(half_step_[i]));
@@ -104,7 +104,7 @@ class LineBank {
 
  private:
   using Traits = ScalarTraits<Scalar>;
-  /// Words are kept in pairs, which the processor reads and writes as one.
+  /// Words are stored in pairs, which the processor reads and writes at once.
   static constexpr std::uint64_t pair(std::int32_t first, std::int32_t second) {
     return std::uint64_t{static_cast<std::uint32_t>(second)} << 32 | static_cast<std::uint32_t>(first);
   }

@@ -13,7 +13,7 @@ struct MotionLimits {
   Increment velocity = 0;
   Increment acceleration = 0;
   Increment jerk = 0;
-  /// Of the ramp after a fault; if it is at most the acceleration, the acceleration.
+  /// Deceleration of the ramp after a fault. If it is below the acceleration limit, that limit is used.
   Increment fault_deceleration = 0;
 };
 

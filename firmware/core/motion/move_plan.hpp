@@ -7,9 +7,9 @@
 
 namespace firmware {
 
-/// A distance D seen as D times the convolution of three box filters of N1 >= N2 + N3 samples, N2 >= N3: velocity is
-/// D/N1 at most, acceleration D/(N1 N2), jerk D/(N1 N2 N3). Each quotient is rounded down and its remainder r is spread
-/// as one unit over r samples, so the increments add up to D exactly.
+/// A distance D as D times the convolution of three box filters of N1 >= N2 + N3 samples, N2 >= N3: velocity is D/N1 at
+/// most, acceleration D/(N1 N2), jerk D/(N1 N2 N3). Each quotient is rounded down and its remainder r is spread as one
+/// unit over r samples, so the increments add up to D exactly.
 struct MovePlan {
   std::int32_t N1 = 0;  ///< samples from the start of speeding up to the start of slowing down
   std::int32_t N2 = 0;  ///< samples from the start of the first jerk to the start of the second

@@ -64,7 +64,7 @@ class PathClock {
     target_ = rate;
     target_ahead_ = kUnknown;
   }
-  /// At this rate from the next sample on; only where nothing moves, so that nothing jumps.
+  /// Sets this rate from the next sample on; only while nothing moves, so that no velocity jumps.
   constexpr void begin(Increment rate) {
     rate_ = target_ = rate;
     change_ = 0;
@@ -134,8 +134,8 @@ class PathClock {
     target_ramp_ = limited(ramp_limit_, square_of(target_), ahead);
   }
 
-  /// Whether `missing` suffices for the next samples of v, v - d, v - 2 d, ... : v (v + d) / (2 d), and an eighth of d
-  /// where v is no multiple.
+  /// Whether `missing` suffices for the next samples of v, v - d, v - 2 d, ... : v (v + d) / (2 d), plus an eighth of d
+  /// if v is not a multiple of d.
   static constexpr bool stops_within(Increment missing, Increment v, Increment d) {
     constexpr int kShift = kFractionBits - 31;
     const Increment left = missing - (d >> 2);

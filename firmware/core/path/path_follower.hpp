@@ -12,7 +12,7 @@
 
 namespace firmware {
 
-/// Numbers are permanent: they stand in replies.
+/// Numbers are permanent, because replies contain them.
 enum class PathPhase : std::uint8_t {
   idle = 0,
   open = 1,  ///< takes nodes, and waits for its start
@@ -24,11 +24,11 @@ enum class PathPhase : std::uint8_t {
 enum class PathEnd : std::uint8_t {
   none = 0,
   completed = 1,  ///< its last node was reached
-  asked = 2,      ///< somebody stopped it
+  asked = 2,      ///< it was stopped by request
   starved = 3,    ///< nodes came too slowly
   host_lost = 4,  ///< the host is silent
   fault = 5,      ///< an axis stopped on its own and left the path
-  probed = 6,     ///< the probe found what the path looked for
+  probed = 6,     ///< the probe reached the state that the path looked for
   touched = 7,    ///< the probe made contact on a path that does not probe
 };
 
@@ -343,7 +343,7 @@ class PathFollower {
   bool ends_at_rest_ = false;  ///< the newest node is at rest
   bool is_held_ = false;
   bool is_starved_ = false;       ///< stops because the nodes might not last
-  std::uint64_t starved_at_ = 0;  ///< what had been accepted when that began
+  std::uint64_t starved_at_ = 0;  ///< time accepted when that began
   bool is_settled_ = false;       ///< the clock keeps its rate, which is the wanted one
   Increment override_ = kOneCount;
   PathClock clock_;
@@ -358,7 +358,7 @@ class PathFollower {
   std::array<PathLimits, axes> limits_{};
   std::uint64_t run_out_ = 0;    ///< until a clock that changes does not change any more, 2^-kPathTimeBits samples
   std::uint64_t made_time_ = 0;  ///< of the nodes that are polynomials, likewise
-  std::uint8_t near_ = 0;        ///< headroom of what lies just before the next node
+  std::uint8_t near_ = 0;        ///< headroom of the part just before the next node
   std::size_t ring_first_ = 0, ring_count_ = 0;
   std::atomic<std::uint32_t> made_ = 0, used_ = 0;  // pieces: written by the background, by the control interrupt
   std::array<PathPiece<axes>, kPrepared> pieces_{};

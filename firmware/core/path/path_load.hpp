@@ -45,8 +45,8 @@ struct PathLoad {
 /// z J there. A clock at rate 1 adds r' x V to the acceleration and 3 r' y A + r'' x V to the jerk; with the bounds
 /// of r' and r'' that PathClock has, 0.95 A / V w, 0.3 J / A w and 0.6 J / V w, both hold for
 ///   w <= (1 - y) / x and w <= (1 - z) / (0.9 y + 0.6 x).
-/// x and y are those of the same place: on a circle an axis is fast where it does not accelerate. Below rate 1 the
-/// bound 1 - (1 - w) r^2 lies on the chord of what would be allowed, which is concave in r^2, and so below it.
+/// x and y are taken at the same place, because on a circle an axis is fast where it does not accelerate. Below rate 1
+/// the bound 1 - (1 - w) r^2 is a chord of the allowed value, which is concave in r^2, so the bound is below it.
 ///
 /// `mask`: axes of the path. Divides: for the background.
 template <std::size_t axes>
@@ -81,7 +81,7 @@ constexpr PathLoad<axes> path_load(const PathPiece<axes>& piece, unsigned mask,
       load.least[i] = std::min(load.least[i], way);
       load.most[i] = std::max(load.most[i], way);
     }
-    // Between two places it bends by no more than this.
+    // Largest deviation between two places.
     const float unseen = sharpest * (1.0F / (8 * kPoints * kPoints));
     if (load.least[i] < 0) load.least[i] -= unseen;
     if (load.most[i] > 0) load.most[i] += unseen;

@@ -121,7 +121,7 @@ class PathPiece {
     return static_cast<std::uint32_t>((static_cast<std::uint64_t>(scaled) * reciprocal_) >> 32);
   }
 
-  /// Of an axis from where the piece begins, 2^-kBits counts.
+  /// Travel of an axis since the beginning of the piece, 2^-kBits counts.
   constexpr std::int64_t travel_at(std::size_t axis, std::uint32_t share) const {
     const Polynomial& p = axis_[axis];
     hide_origin(share);
@@ -129,7 +129,7 @@ class PathPiece {
     for (int i = 3; i >= 0; --i) sum = p.term[static_cast<std::size_t>(i)] + path_piece::half_of_share(sum, share);
     return path_piece::half_of_share(sum, share);
   }
-  /// Of the powers 1 to 5 of the share of the duration, counts.
+  /// Coefficients of the powers 1 to 5 of the share of the duration, counts.
   constexpr std::array<float, 5> coefficients(std::size_t axis) const {
     std::array<float, 5> all{};
     for (std::size_t power = 0; power < all.size(); ++power)

@@ -1,4 +1,4 @@
-// What a touch probe says while axes follow a path.
+// Evaluates a touch probe while axes follow a path.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,19 @@
 
 namespace firmware {
 
-/// What its input does on contact. Numbers are permanent: of the parameter probe.input.
+/// State of its input on contact. Numbers are permanent: values of the parameter probe.input.
 enum class ProbeContact : std::uint8_t { none = 0 /* not wired */, closes = 1, opens = 2 };
 
-/// What ends a path. Numbers are permanent: they stand in requests.
+/// State of the probe that ends a path. Numbers are permanent, because requests contain them.
 enum class ProbeStop : std::uint8_t {
   none = 0,  ///< no probing path: a contact during it is unexpected
   contact = 1,
   release = 2,
 };
 
-/// What is looked for counts once the input has said so for a while. The position is of the first edge, which the
-/// hardware latched; an edge after which the input returns for as long was a spark, and is forgotten.
+/// The expected state counts once the input has had it for a while. The position is that of the first edge, which the
+/// hardware latched. If the input returns to its earlier state for the same time, the edge was a noise spike and is
+/// ignored.
 class ProbeWatch {
  public:
   /// `samples`: that while, control periods.
@@ -34,7 +35,7 @@ class ProbeWatch {
   constexpr bool is_on() const { return contact_ != ProbeContact::none; }
   constexpr bool is_probing() const { return stop_ != ProbeStop::none; }
 
-  /// At the path's start. False for a probing path where what it looks for is there already.
+  /// Call it at the path's start. False if a probing path looks for a state that exists already.
   template <hal::ProbeInput Probe>
   constexpr bool begin(Probe& probe) {
     probe.arm(wants_closed());
@@ -42,8 +43,8 @@ class ProbeWatch {
     return was_missing_ || !is_probing();
   }
 
-  /// Once a control period: what is looked for has come. On a path that does not probe, a contact that was there when
-  /// it began must have been lost before.
+  /// Call it once a control period: whether the expected state has been reached. On a path that does not probe, a
+  /// contact that existed at its start must have been lost first.
   template <hal::ProbeInput Probe>
   constexpr bool has_come(Probe& probe) {
     const bool there = is_there(probe), stays_away = missing_.filtered(!there);

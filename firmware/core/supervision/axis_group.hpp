@@ -57,7 +57,7 @@ class AxisGroup {
     return kAxes;
   }
 
-  /// Between its ways homing stands for a moment.
+  /// Homing stands still for a moment between its searches.
   constexpr bool is_in_motion(std::size_t index) const {
     const BoardAxis& axis = axes_[index];
     return axis.is_or_will_be_on() && (!axis.is_at_rest() || axis.is_homing());
@@ -68,15 +68,15 @@ class AxisGroup {
     return false;
   }
 
-  /// As of SupervisedAxis, of any axis.
+  /// As for SupervisedAxis: true if it holds for any axis.
   constexpr bool must_cut_power() const {
     for (const BoardAxis& axis : axes_)
       if (axis.must_cut_power()) return true;
     return false;
   }
 
-  /// For the relay in the amplifiers' power: it opens once all axes stand after a stop, or after the stop's delay, and
-  /// where an enable does not drop.
+  /// Whether the relay in the amplifiers' power is closed. It opens once all axes stand after a stop, after the stop's
+  /// delay, and if an enable does not drop.
   constexpr bool may_have_power() const {
     if (board_.is_stopped() && (board_.is_stop_due() || !outputs_on())) return false;
     return !must_cut_power();
@@ -108,7 +108,7 @@ class AxisGroup {
         });
   }
 
-  /// The periods that were lost.
+  /// Tells the axes about lost periods.
   constexpr void bridge_gap(const Readings& readings) {
     for (std::size_t i = 0; i < kAxes; ++i) axes_[i].bridge_gap(readings[i]);
   }

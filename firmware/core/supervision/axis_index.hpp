@@ -29,7 +29,7 @@ class AxisIndex {
     seen_ = encoder.read_index();
     return monitor_.is_on() ? monitor_.watch(seen_, counter) : AxisFault::none;
   }
-  /// Of the last look.
+  /// Result of the last reading.
   constexpr const hal::IndexReading& seen() const { return seen_; }
 
   // The axes of a group read in different control periods.

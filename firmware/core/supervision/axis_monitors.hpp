@@ -26,7 +26,7 @@ class AxisMonitors {
     forget_high_water();
   }
 
-  /// Before the first sample of a self-test: the past is unknown.
+  /// Call it before the first sample of a self-test, when the past is unknown.
   constexpr void restart() {
     disagreement_ = Scalar(0);
     encoder_velocity_ = Scalar(0);
@@ -62,7 +62,7 @@ class AxisMonitors {
     return AxisFault::none;
   }
 
-  /// Faults of a closed loop. `seen` is this sample's, which watch_sensors() has had already.
+  /// Faults of a closed loop. `seen`: of this sample, already passed to watch_sensors().
   constexpr AxisFault watch_motion(const AxisTelemetry<Scalar>& seen) {
     const Scalar error = magnitude(seen.tracking_error);
     if (error > noted_error_ && !may_follow(error, seen.reference_velocity)) return AxisFault::following_error;
@@ -82,7 +82,7 @@ class AxisMonitors {
   /// From now on positions are counted from another origin.
   constexpr void forget_travel() { travel_.restart(); }
 
-  /// Of the two sensors' speeds the smaller: what both show is not a fault of one sensor.
+  /// The smaller of the two sensors' speeds: a speed that both show is no fault of one sensor.
   constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
     const Scalar encoder = Traits::times(seen.encoder_travel, velocity_per_count_);
     const bool is_slower = tachometer_fitted_ && magnitude(seen.tachometer_velocity) < magnitude(encoder);

@@ -23,15 +23,15 @@ enum class DriveStartStep : std::uint8_t {
   late,        ///< the amplifier does not become ready
 };
 
-/// Of an amplifier without the signal: always.
+/// Always true for an amplifier without this signal.
 template <hal::DriveEnable Lines>
 constexpr bool is_ready(Lines& lines) {
   if constexpr (hal::ReadyInput<Lines>) return lines.is_ready();
   return true;
 }
 
-/// Enable, amplifier ready, loop closed, brake released, motion; at the end standstill, brake applied, enable off. So a
-/// brake never slips against a drive, and an axis that hangs is never without one of the two.
+/// Order: enable, amplifier ready, loop closed, brake released, motion; at the end standstill, brake applied, enable
+/// off. So the drive never works against the brake, and a vertical axis is always held by one of the two.
 class DriveSequence {
  public:
   constexpr void configure(const DriveSequenceParameters& parameters) { parameters_ = parameters; }
@@ -44,7 +44,8 @@ class DriveSequence {
 
   constexpr void begin() { samples_ = 0; }
 
-  /// Once a control period after begin(), until it says anything but wait; `loop_closed`: it has said close_loop.
+  /// Once a control period after begin(), until it returns anything but wait; `loop_closed`: it has returned
+  /// close_loop.
   constexpr DriveStartStep next_of_start(bool is_ready, bool loop_closed) {
     ++samples_;
     if (loop_closed) return samples_ > release_samples() ? DriveStartStep::started : DriveStartStep::wait;

@@ -1,4 +1,4 @@
-// After the enable has dropped: the amplifier must say so, and the drive must not gain speed.
+// Monitors the drive after the enable has dropped: the amplifier must report it, and the drive must not gain speed.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace firmware {
 
-/// Otherwise the amplifier drives on: its enable is welded or wired past the board, and only its power can be cut. A
-/// ready contact has kTime_s to open, and stays open. The speed may not grow for as long, once a brake has had its time
-/// to hold (until then an axis under weight falls), and never exceed the limit of an axis that is driven.
+/// Otherwise the amplifier still drives: its enable relay is welded or bypassed, and only its power can be cut. A ready
+/// contact must open within kTime_s and stay open. The speed must not grow for kTime_s, counted after the brake's time
+/// to hold (until then a loaded vertical axis falls), and must never exceed the overspeed limit.
 template <typename Scalar>
 class DropWatch {
  public:
@@ -24,10 +24,11 @@ class DropWatch {
     left_ = ready_samples_ = 0;
   }
 
-  /// The enable drops.
+  /// Called when the enable drops.
   constexpr void begin() { left_ = brake_samples_ + while_samples_; }
 
-  /// Each sample without an enable. `velocity`: of the slower sensor. It may gain twice what sensors may differ by.
+  /// Called in each sample without an enable. `velocity`: from the slower sensor. The speed may grow by twice the
+  /// difference that is allowed between the sensors.
   constexpr bool is_driven(const MonitorLimits<Scalar>& limits, bool says_ready, Scalar velocity) {
     if (left_ == brake_samples_ + while_samples_) velocity_ = velocity;
     velocity_ = velocity_ + (velocity - velocity_) * Scalar(1.0f / kFilterSamples);
@@ -41,7 +42,7 @@ class DropWatch {
   }
 
  private:
-  static constexpr std::int32_t kFilterSamples = 8;   ///< noise on the encoder is no motion
+  static constexpr std::int32_t kFilterSamples = 8;   ///< so that noise on the encoder does not count as motion
   static constexpr std::int32_t kMostSamples = 4000;  ///< of kTime_s at 20 kHz, twice
 
   Scalar velocity_{}, most_{};

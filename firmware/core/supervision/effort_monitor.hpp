@@ -1,4 +1,4 @@
-// What the command should have done, against what the encoder shows; and whether the command swings for nothing.
+// Compares the speed that the command should cause with the encoder's, and detects an oscillating command.
 #pragma once
 
 #include "firmware/core/axis_parameters.hpp"
@@ -8,15 +8,15 @@ namespace firmware {
 
 /// Needs neither the estimator nor the friction curve, so that a fault of either cannot hide from it.
 ///
-/// Speed owed. A command beyond any friction must change the speed. Of the change that the sampled drive (7) promises
-/// for what lies beyond, half is enough: inertia may be twice what the model says. What the encoder's speed lacks of
-/// that half adds up, and is forgotten once the command is small again. A dead encoder, a blocked axis and a motor
-/// without current leave the debt to grow, and so does a drive that runs against its command. What the command has been
-/// for half a second is what holds a load, and is not counted.
+/// Missing speed. A command beyond any friction must change the speed. The part beyond friction gives a change by the
+/// sampled drive (7); half of it is required, because the inertia may be twice the model's. The part of that half that
+/// the encoder's speed lacks is summed; the sum is reset once the command is small again. It grows with a dead encoder,
+/// a blocked axis, a motor without current, and a drive that runs against its command. The mean command over half a
+/// second holds a load and is not counted.
 ///
-/// Swinging. The feedback's part of the command, without its slow part, is noise and a few transients on a sound axis.
-/// Its mean square over a tenth of a second is what an unstable loop raises. A quarter of that time is the shortest in
-/// which the largest swing is found, and five samples the shortest for speed owed: neither is for a single bad reading.
+/// Oscillation. Without its slow part, the feedback's part of the command is noise and a few transients on a healthy
+/// axis. An unstable loop raises its mean square over a tenth of a second. The largest oscillation is found after at
+/// least a quarter of that time, missing speed after at least five samples, so a single bad reading has no effect.
 template <typename Scalar>
 class EffortMonitor {
  public:
@@ -50,15 +50,15 @@ class EffortMonitor {
     return motion != AxisFault::none ? motion : watch_swing(seen.feedback_V);
   }
 
-  /// What the command has been on average: what holds a load.
+  /// Mean command, which holds a load.
   constexpr Scalar load_V() const { return load_V_; }
-  /// Mean square of the swinging part of the feedback, V^2.
+  /// Mean square of the oscillating part of the feedback, V^2.
   constexpr Scalar swing() const { return power_; }
 
  private:
   using Traits = ScalarTraits<Scalar>;
 
-  /// What the command of the last sample has done until this one.
+  /// Effect of the last sample's command until this sample.
   constexpr AxisFault compare(Scalar velocity) {
     if (Traits::magnitude(applied_V_) <= friction_V_) {  // nearly always
       debt_ = Scalar(0);
@@ -93,7 +93,7 @@ class EffortMonitor {
   Scalar friction_V_{}, debt_limit_{}, largest_step_{}, oscillation_square_{}, quiet_square_{}, promised_per_volt_{};
   Scalar load_share_{}, power_share_{}, mean_share_{};
   Scalar applied_V_{}, load_V_{}, last_velocity_{};
-  Scalar debt_{};  ///< speed that the command has promised and the encoder has not shown, rad/s (m/s)
+  Scalar debt_{};  ///< speed that the command should have caused but the encoder does not show, rad/s (m/s)
   Scalar mean_V_{}, power_{};
   bool was_forward_ = true;
 };

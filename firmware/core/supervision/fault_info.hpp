@@ -1,4 +1,4 @@
-// What is said of a fault: how it is called, what causes and what mends it, and how the axis is stopped.
+// Description of a fault: name, cause, remedy, and how the axis is stopped.
 #pragma once
 
 #include "firmware/core/axis_fault.hpp"
@@ -6,7 +6,7 @@
 namespace firmware {
 
 enum class FaultReaction : std::uint8_t {
-  none,       ///< nothing to stop: the axis is not let go
+  none,       ///< nothing to stop: the axis stays enabled
   ramp_stop,  ///< the control still works: slow down within the limits of references, then drop the enable
   /// One sensor has failed, or the loop has lost the drive, but another sensor still shows the speed: slow down with
   /// that one, then drop the enable. Without one, drop the enable at once.
@@ -20,7 +20,7 @@ struct FaultInfo {
   const char* cause = nullptr;
   const char* remedy = nullptr;
   FaultReaction reaction = FaultReaction::none;
-  bool loses_position = false;  ///< nobody knows whether all counts were counted: the axis is no longer homed
+  bool loses_position = false;  ///< counts may have been lost, so the axis is no longer homed
 };
 
 }  // namespace firmware

@@ -44,16 +44,16 @@ class FaultLatch {
     activity_ = activity;
     was_homed_ = homed;
   }
-  /// Of those that come before the outputs are off, the first of the worst kind stays.
+  /// Keeps the first of the worst kind among the faults before the outputs are off.
   constexpr void add(AxisFault found) {
     if (found == first_ || (second_ != AxisFault::none && (!is_worse(found) || is_worse(second_)))) return;
     second_ = found;
   }
 
   constexpr AxisFault first() const { return first_; }
-  /// none: nothing else went wrong while the first fault brought the axis to a stop.
+  /// none: no further fault while the first fault brought the axis to a stop.
   constexpr AxisFault second() const { return second_; }
-  /// Once for each first fault.
+  /// True once for each first fault.
   constexpr bool take_new() {
     if (!is_new_) return false;
     is_new_ = false;

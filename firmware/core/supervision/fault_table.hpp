@@ -9,7 +9,7 @@
 
 namespace firmware {
 
-/// Those that are found where their cause is handled; what a monitor finds is declared in monitored_faults.hpp.
+/// Faults that are found where their cause is handled; faults found by monitors are declared in monitored_faults.hpp.
 namespace fault_table {
 
 inline constexpr std::array kOthers = std::to_array<FaultInfo>({
@@ -146,7 +146,7 @@ inline constexpr std::size_t kCount = [] {
   return count;
 }();
 
-/// A row for every number below kCount; nameless where a number was left out or given twice.
+/// A row for every number below kCount; without a name if a number was left out or given twice.
 constexpr std::array<FaultInfo, kCount> by_number() {
   std::array<FaultInfo, kCount> rows{};
   const auto put = [&rows](const FaultInfo& row) {
@@ -163,7 +163,7 @@ constexpr std::array<FaultInfo, kCount> by_number() {
 
 }  // namespace fault_table
 
-/// In the order of their numbers.
+/// All faults, in the order of their numbers.
 inline constexpr std::array<FaultInfo, fault_table::kCount> kFaults = fault_table::by_number();
 
 namespace fault_table {
@@ -178,7 +178,7 @@ constexpr std::array<FaultReaction, kFaults.size()> reactions_alone() {
   return reactions;
 }
 
-/// A bit for each.
+/// One bit for each fault that loses the position.
 inline constexpr std::uint64_t kPositionLost = [] {
   std::uint64_t bits = 0;
   for (const FaultInfo& row : kFaults)

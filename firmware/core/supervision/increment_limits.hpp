@@ -1,4 +1,4 @@
-// What an interpolator may ask of an axis from one sample to the next.
+// Limits of an interpolator's increments from one sample to the next.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class IncrementLimits {
   constexpr void restart() { last_ = 0; }
   constexpr void take(Increment increment) { last_ = increment; }
 
-  /// Of the whole reference: the axis's own as it was in the last sample, `newest`, and the increment on top.
+  /// For the whole reference: the axis's own in the last sample, `newest`, plus the increment.
   constexpr bool allow(Increment increment, Increment newest) const {
     const std::uint32_t change = upper(increment) - upper(last_);
     const std::uint32_t whole = upper(newest) + change;

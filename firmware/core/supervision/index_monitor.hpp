@@ -1,4 +1,4 @@
-// Counts between index pulses: what an encoder's own mark says of its counting.
+// Checks the encoder's counts between index pulses.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace firmware {
 
-/// Every index pulse lies a whole number of turns from the one before. What is missing or too much is added up from
-/// pulse to pulse, so that counts lost one by one are found as well; a way of more than a turn without a pulse is a
-/// dead index line, or a counter that counts too much. Counts as the timer has them, modulo 2^32.
+/// Every index pulse is a whole number of turns from the one before. The difference is summed from pulse to pulse, so
+/// that single lost counts are found as well. More than a turn without a pulse indicates a dead index line, or a
+/// counter that counts too much. Counts are the timer's, modulo 2^32.
 class IndexMonitor {
  public:
-  /// Counts that may be missing or too much: a pulse is a few counts wide, and either of its ends may be captured.
+  /// Tolerance in counts: a pulse is a few counts wide, and either of its edges may be captured.
   static constexpr std::int32_t kTolerance = 8;
 
-  /// `spacing`: counts from one pulse to the next, >= 0; 0: nothing is watched.
+  /// `spacing`: counts from one pulse to the next, >= 0; 0: not monitored.
   constexpr void configure(std::int32_t spacing) {
     spacing_ = spacing;
     restart();
@@ -28,7 +28,7 @@ class IndexMonitor {
     drift_ = 0;
   }
 
-  /// As often as the pulses are asked for, while on. `counts`: the counter now.
+  /// Call it whenever the pulses are read, while on. `counts`: the present counter.
   constexpr AxisFault watch(const hal::IndexReading& index, std::uint32_t counts) {
     if (!is_begun_) last_ = counts;
     is_begun_ = true;
@@ -53,7 +53,7 @@ class IndexMonitor {
 
   std::int32_t spacing_ = 0;
   std::int32_t drift_ = 0;
-  std::uint32_t last_ = 0;  ///< of the last pulse; before the first, where the watch began
+  std::uint32_t last_ = 0;  ///< of the last pulse; before the first pulse, of the monitor's start
   bool is_begun_ = false;
   bool has_pulse_ = false;
 };

@@ -1,5 +1,5 @@
-// Thresholds above which a monitor would not protect: the motion of an axis at full command, from standstill, in the
-// times below, or what a moving axis needs if that is more.
+// Highest thresholds with which a monitor still protects: the motion of an axis at full command from standstill in the
+// times below, or the value that a moving axis needs if that is larger.
 #pragma once
 
 #include "firmware/core/arithmetic/scalar.hpp"

@@ -15,13 +15,13 @@ enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 ///
 ///   e(k) = e(k-1) + (w_ref - w) lead Ts,   u = Kc1 e + Kc2 (w_ref - w) + load + (w_ref(k) - w_ref(k-1)) / Bd2
 ///
-/// which is the loop's own feedback (50) with the position counted from the beginning of the stop, by that sensor
-/// alone: neither estimator nor the other sensor has a part in it. `load` is what the command was on average, a weight
-/// above all. A drive that slows down by itself takes the reference along. One that is faster than the reference by
-/// twice the difference that sensors may have, or runs the other way by as much, or takes all that the converter has
-/// for kMostSaturated, is not under control: the enable drops. So does one that by its sensor stands while half
-/// of that is added to the load, and one whose sensors diverged near rest, where neither is known to be the wrong one,
-/// if the tachometer then gains as much.
+/// which is the loop's own feedback (50) with the position counted from the beginning of the stop by that sensor alone,
+/// without estimator and other sensor. `load` is the mean command, mainly due to a weight. If the drive slows down by
+/// itself, the reference follows. The enable drops if the drive is not under control: it is faster than the reference
+/// by twice the allowed difference of the sensors, or moves in the other direction by as much, or needs the converter's
+/// whole range for kMostSaturated. It also drops if the drive stands by its sensor while half of that is added to the
+/// load. If the sensors diverged near rest, where the faulty one is unknown, it drops if the tachometer then gains as
+/// much.
 template <typename Scalar>
 class SensorStop {
  public:
@@ -69,7 +69,7 @@ class SensorStop {
   constexpr bool is_active() const { return trusted_ != TrustedSensor::none; }
   constexpr bool uses_encoder() const { return trusted_ == TrustedSensor::encoder; }
 
-  /// After each step(), with its output command_V(). False once the drive does not obey.
+  /// After each step(), with its output command_V(). False once the drive does not follow.
   constexpr bool next(const AxisTelemetry<Scalar>& seen) {
     const Scalar change = measured(seen) - velocity_;
     velocity_ = velocity_ + change * Scalar(0.5f);  // a count in a sample is coarse

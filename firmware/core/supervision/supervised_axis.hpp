@@ -66,7 +66,7 @@ class SupervisedAxis {
     return true;
   }
 
-  /// As of Axis, while the state is enabled; false otherwise.
+  /// As for Axis, while the state is enabled; false otherwise.
   constexpr bool jog(Scalar velocity) {
     if (state_ != SupervisorState::enabled || homing_.is_active() || !has_room_towards(velocity)) return false;
     limiting_.velocity_limited =
@@ -125,7 +125,7 @@ class SupervisedAxis {
   /// It read the index in its last step; the others of a group do so in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
   constexpr void leave_index_for_later() { index_.leave_for_later(); }
-  /// As of Axis, before a step that comes late.
+  /// As for Axis, before a late step.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
   constexpr CountPosition leading() const { return axis_.leading(); }  ///< as of Axis
@@ -175,7 +175,7 @@ class SupervisedAxis {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
   }
   constexpr AxisFault fault() const { return latched_.first(); }
-  /// Whether it came since the last call.
+  /// Whether it occurred since the last call.
   constexpr bool take_new_fault() { return latched_.take_new(); }
   constexpr AxisFault second_fault() const { return latched_.second(); }
   /// The fault that stopped it since the last clear_fault().
@@ -257,12 +257,12 @@ class SupervisedAxis {
     advance(outer, own);
   }
 
-  /// Of an axis that follows a path, homes, or stops by one sensor.
+  /// For an axis that follows a path, homes, or stops by one sensor.
   [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
     is_led_ ? step_with(led_increment_, outer, encoder) : step_by_itself(outer, encoder);
   }
 
-  /// Of an axis that follows only its own reference.
+  /// For an axis that follows only its own reference.
   [[gnu::noinline]] constexpr void step_by_itself(AxisFault outer, const hal::EncoderReading& encoder) {
     if (stands_aside_) return;
     if (sensor_stop_.is_active()) return step_sensor_stop(outer, encoder);
@@ -315,7 +315,7 @@ class SupervisedAxis {
     advance(outer, own);
   }
 
-  /// Whatever fault comes from outside: the motion is monitored until the outputs are off.
+  /// The motion is monitored until the outputs are off, even after a fault from outside.
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
     const AxisFault lines = watch_lines();
@@ -332,7 +332,7 @@ class SupervisedAxis {
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
   }
 
-  /// Of amplifier and converter.
+  /// Faults of amplifier and converter.
   [[gnu::always_inline]] constexpr AxisFault watch_lines() {
     const bool says_fault = hal_.drive_enable().is_faulted();
     if ((says_fault || drive_fault_.is_pending()) && drive_fault_.filtered(says_fault)) return AxisFault::drive_fault;
@@ -391,7 +391,7 @@ class SupervisedAxis {
     if (events != 0) enter(next_state(state_, events, latched_.first() != AxisFault::none));
   }
 
-  /// Once it is latched it acts.
+  /// A fault takes effect once it is latched.
   constexpr SupervisorEvent latch(AxisFault found) {
     const bool drops = reaction_to(found) != FaultReaction::ramp_stop && !begin_sensor_stop(found);
     if (latched_.first() == AxisFault::none)

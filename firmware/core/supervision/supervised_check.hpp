@@ -12,7 +12,7 @@ constexpr Refusal check_supervised(const AxisParameters<Scalar>& parameters) {
   Refusal error = check(parameters);
   if (error == Refusal::none) error = check_homing(parameters.homing);
   if (error == Refusal::none) error = check_sequence(parameters.sequence);
-  // What needs a brake may fall: at rest nothing but a tachometer shows that it does once the encoder is dead.
+  // An axis with a brake may fall. If its encoder is dead at rest, only a tachometer shows the fall.
   if (error == Refusal::none && parameters.sequence.brake_fitted && !parameters.tachometer_fitted)
     error = Refusal::brake_feedback;
   if (error == Refusal::none) error = check_monitors(parameters);

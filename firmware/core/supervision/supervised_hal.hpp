@@ -15,7 +15,7 @@ concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
   requires hal::LimitInputs<std::remove_reference_t<decltype(axis.limits())>>;
 };
 
-/// Where nothing interrupts.
+/// For use without interrupts.
 struct NoShutOut {};
 
 /// Limitations of the motion that are not faults.

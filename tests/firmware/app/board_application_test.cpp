@@ -128,7 +128,7 @@ TYPED_TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
   again.run(200);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
   EXPECT_FALSE(again.board.axis(0).drive_enable().is_on());
-  // Parameters alone do not mend it: they must also be saved.
+  // New parameters alone are no remedy: they must also be saved.
   ASSERT_EQ(again.download(this->paper_values()).status, Status::ok);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
   ASSERT_EQ(again.ask(MessageType::save).status, Status::ok);
@@ -160,7 +160,8 @@ TYPED_TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
   EXPECT_NEAR(static_cast<double>(axis.counts()), static_cast<double>(target), 2.0);
 }
 
-/// Moves by any count, of an axis that is homed and of one that is not: the board answers, and stays where it is.
+/// Moves by any number of counts, of a homed axis and of one that is not homed: the board answers, and the axis does
+/// not move.
 TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
                          kMost = std::numeric_limits<std::int64_t>::max();
@@ -179,7 +180,7 @@ TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
   }
 }
 
-/// Until it is homed nobody knows how much room an axis has.
+/// Until an axis is homed, its free travel is unknown.
 TYPED_TEST(BoardMotion, AnAxisThatIsNotHomedHasAVelocityLimitOfItsOwn) {
   typename TestFixture::Bench bench;
   bench.fit_and_enable_x(5.0);
@@ -215,7 +216,7 @@ TYPED_TEST(BoardMotion, AnAxisThatIsNotHomedHasAVelocityLimitOfItsOwn) {
   EXPECT_EQ(jog(-20.0F).status, Status::ok);
 }
 
-/// Control periods of 1 ms from the last request to the beginning of the stop, and that it ends well.
+/// Control periods of 1 ms from the last request to the beginning of the stop; also checks the end of the stop.
 template <typename Bench>
 int periods_until_a_stop(double timeout_s) {
   Bench bench;
@@ -237,7 +238,7 @@ TYPED_TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
   EXPECT_NEAR(periods_until_a_stop<typename TestFixture::Bench>(0.05), 50, 2);
 }
 
-/// A change in motion is no pause: an interrupt that comes late after it is still found.
+/// A change in motion does not pause the monitor: a late interrupt after it is still found.
 TYPED_TEST(BoardMotion, AParameterChangeHidesNoOverrun) {
   typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
@@ -336,7 +337,7 @@ TYPED_TEST(Capture, LossIsCountedAndShowsInTheNumbersOfRows) {
   typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
   ASSERT_EQ(bench.ask(MessageType::start_capture, firmware::CaptureRequest{{0x7FF}, 1, 0}).status, Status::ok);
-  bench.run(500);  // nobody fetches: the queue of the cable and then the board's rows fill up
+  bench.run(500);  // the host does not read: first the queue of the cable, then the board's rows fill up
   std::vector<std::uint32_t> numbers;
   firmware::CaptureReply taken;
   ASSERT_TRUE(bench.ask(MessageType::stop_capture).get(taken));
@@ -406,7 +407,7 @@ TYPED_TEST(BoardMotion, TheLastAxisMovesAndTheOthersStopWithIt) {
     ASSERT_EQ(bench.ask(MessageType::heartbeat).status, Status::ok);
   }
   EXPECT_NEAR(static_cast<double>(bench.status().axis.at(kLast).counts()), 2048.0, 2.0);
-  bench.board.plant(kLast).set_enabled(false);  // the drive gives way, and something pushes
+  bench.board.plant(kLast).set_enabled(false);  // the drive has no current, and an external force acts
   ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{kLast, {}, 50.0F}).status, Status::ok);
   for (int i = 0; i < 100; ++i) {
     bench.run(10);

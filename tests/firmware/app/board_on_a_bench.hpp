@@ -29,12 +29,12 @@ inline sim::DriveDescription paper_machine(const PaperAxis& paper) {
   return drive;
 }
 
-/// What a board says of itself and of each of its axes.
+/// A board's status and that of each of its axes.
 struct SeenStatus : firmware::BoardStatus {
   std::vector<firmware::AxisStatus> axis;
 };
 
-/// The paper's axes take turns.
+/// The paper's axes alternate.
 template <typename Scalar = float, std::size_t axes = hal::kAxisCount>
 struct BoardOnABench {
   using Board = hal::pc::SimulatedBoardOf<axes>;
@@ -46,7 +46,7 @@ struct BoardOnABench {
   firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server{application, image, {}};
   std::uint16_t sequence = 0;
-  std::uint16_t client = 1;  ///< who asks
+  std::uint16_t client = 1;  ///< the requesting client
   std::uint8_t pass = 0;     ///< likewise
 
   static typename Board::Drives machines() {
@@ -126,7 +126,7 @@ struct BoardOnABench {
     return ask(firmware::MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)});
   }
 
-  /// As many requests as it takes.
+  /// Sends as many requests as necessary.
   SeenStatus status() {
     SeenStatus seen;
     do {

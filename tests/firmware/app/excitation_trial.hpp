@@ -1,4 +1,4 @@
-// A random drive on a board without parameters, a random excitation in a random box, and something that breaks.
+// A random drive on a board without parameters, a random excitation in a random box, and a random defect.
 #pragma once
 
 #include <algorithm>
@@ -133,10 +133,9 @@ class ExcitationTrial {
   double window() const { return request_.travel_counts * drive_.data.encoder_resolution; }
   double fastest() const { return fastest_; }
 
-  /// From the speed at which the axis crossed the edge of the window (or at which it was when the fault took the motor
-  /// away): eight samples until the board acts, then friction brakes it, with half of the command's effort besides
-  /// where the motor is still there. Below two counts in four samples the encoder shows no speed to brake: the axis
-  /// coasts.
+  /// Stopping distance from the speed at the edge of the window (or at the fault that removed the motor's torque):
+  /// eight samples until the board acts, then braking by friction and, if the motor still works, half of the command's
+  /// effort. Below two counts in four samples the encoder shows no speed that could be braked, so the axis coasts.
   double way_of_stop() const {
     const double v = std::max(crossing_speed_, 1e-12);
     const double unseen = std::min(v, 2.0 * drive_.data.encoder_resolution / 0.004);
@@ -145,7 +144,7 @@ class ExcitationTrial {
            2.0 * drive_.data.encoder_resolution + blind_samples() * 0.001 * box_speed() +
            (fault_ == TrialFault::encoder_dead || fault_ == TrialFault::encoder_swapped ? 1.2 * window() / 8.0 : 0.0);
   }
-  /// The encoder's speed is four samples old; a sensor that broke is found in some more.
+  /// The encoder's speed is four samples old; a broken sensor is found some samples later.
   double fastest_allowed() const {
     return box_speed() + drive_.data.encoder_resolution / 0.004 * 2.0 +
            (full_acceleration() * (kSamples + blind_samples())) * 0.001;
@@ -198,7 +197,7 @@ class ExcitationTrial {
     is_reversed_ = between(0, 1) == 0;
   }
 
-  /// Boxes that fit: the way to the box's speed is a part of the window.
+  /// Suitable boxes: the distance to reach the box's speed is a part of the window.
   void make_excitation() {
     const sim::DataSheet& data = drive_.data;
     const double speed = full_acceleration_ * spread(0.01, 0.1);
@@ -296,7 +295,7 @@ class ExcitationTrial {
                              : 0.0;
     return (least_friction_ + brake) / inertia_ * drive_.data.lead;
   }
-  /// What the filter over the difference of encoder and tachometer takes.
+  /// Delay of the filter over the difference of encoder and tachometer.
   double blind_samples() const {
     const bool is_sensor = fault_ == TrialFault::encoder_dead || fault_ == TrialFault::encoder_swapped ||
                            fault_ == TrialFault::tachometer_dead || fault_ == TrialFault::tachometer_reversed;

@@ -1,4 +1,4 @@
-// A board that excites an axis: within its box whatever the drive is and whatever breaks, and at rest afterwards.
+// A board that excites an axis: with any drive and any defect, the axis stays within its box and comes to rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ int trials(int usual) {
   return wanted != nullptr ? std::atoi(wanted) : usual;
 }
 
-/// Catches a box that is not watched, a brake of the wrong sign (motors are reversed in half of the trials), a stop
-/// that waits for something, and an excitation that survives a fault.
+/// Catches a box that is not monitored, braking with the wrong sign (motors are reversed in half of the trials), a stop
+/// that waits, and an excitation that continues after a fault.
 TEST(ExcitedBoard, LeavesItsBoxByNoMoreThanTheWayOfItsStop) {
   double worst_share = 0.0;
   std::map<ExcitationEnd, int> ends;

@@ -1,4 +1,4 @@
-// Excitations of an axis whose loop is closed, as a host asks for them.
+// Excitations of an axis in closed loop, requested by a host.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class ExcitedLoop : public testing::Test {
     EXPECT_TRUE(bench.ask(MessageType::excitation_state).get(payload));
     return payload;
   }
-  /// Runs to the end with a living host; the largest way and reference speed on the way.
+  /// Runs to the end with a live host; returns the largest distance and reference speed.
   void run_to_the_end() {
     for (int k = 0; k < 400 && state().phase != static_cast<std::uint8_t>(ExcitationPhase::done); ++k) {
       for (int i = 0; i < 20; ++i) {

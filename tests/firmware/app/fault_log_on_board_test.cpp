@@ -1,4 +1,4 @@
-// What a board writes into its fault log, and when.
+// Entries that a board writes into its fault log, and their time.
 #include <gtest/gtest.h>
 
 #include "firmware/app/protocol/fault_log_messages.hpp"
@@ -40,7 +40,7 @@ class FaultLogOnBoard : public testing::Test {
 using Numbers = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(FaultLogOnBoard, Numbers);
 
-/// Catches an entry that is lost, that takes a fault's place, or that is written while a drive is enabled.
+/// Catches an entry that is lost, that replaces a fault, or that is written while a drive is enabled.
 TYPED_TEST(FaultLogOnBoard, KeepsHowTheLastRunEnded) {
   typename TestFixture::Bench bench;
   firmware::LoggedFault ended;
@@ -134,7 +134,7 @@ TYPED_TEST(FaultLogOnBoard, NamesHomingAndExperiments) {
   EXPECT_EQ(this->press_stop(bench).activity, static_cast<std::uint8_t>(AxisActivity::open_loop));
 }
 
-/// Flash stalls the processor: nothing is written while an axis is on, and nothing is forgotten meanwhile.
+/// Flash stalls the processor, so nothing is written while an axis is enabled, and no fault is lost meanwhile.
 TYPED_TEST(FaultLogOnBoard, WaitsUntilEveryAxisIsOff) {
   typename TestFixture::Bench bench;
   firmware::ParameterValues values = paper_values();

@@ -21,7 +21,7 @@ using Log = firmware::FaultLog<SimulatedFlash>;
 /// Sectors of 96 entries: after a copy of 64 there is room for some 30 more.
 SimulatedFlash blank_flash() { return SimulatedFlash(4, 96 * 32, 4); }
 
-/// As it was given to the log, with the number that the log gives it.
+/// The fault as passed to the log, with the log's number.
 LoggedFault fault_number(std::uint32_t n) {
   LoggedFault entry;
   entry.number = n;
@@ -155,7 +155,7 @@ TEST(FaultLog, ADamagedEntryIsLeftOutAndNoOther) {
   EXPECT_EQ(again.entry(2), fault_number(2));
 }
 
-/// Some cells do not take what they are given, and say nothing.
+/// Some cells do not store the data, without reporting an error.
 class WornFlash : public SimulatedFlash {
  public:
   using SimulatedFlash::SimulatedFlash;
@@ -176,7 +176,7 @@ TEST(FaultLog, LeavesPlacesThatDoNotReadBack) {
   }
 }
 
-/// A board without these sectors has no log, and nothing else is hurt.
+/// A board without these sectors has no log; everything else works.
 TEST(FaultLog, IsNothingWithoutItsSectors) {
   SimulatedFlash flash(2, 4096, 4);
   Log log = log_at_start(flash);

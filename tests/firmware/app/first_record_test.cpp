@@ -1,4 +1,4 @@
-// The first record of an axis without a design: amplifier and brake come in their order, as in a closed loop.
+// The first record of an axis without a design: amplifier and brake act in the same order as in a closed loop.
 #include <gtest/gtest.h>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"

@@ -1,4 +1,4 @@
-// A board that finds home, and what waits for it.
+// A board that finds home, and functions that need home.
 #include <gtest/gtest.h>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"
@@ -44,7 +44,7 @@ struct HomingBench {
   }
   firmware::AxisStatus axis() { return bench.status().axis[0]; }
   bool is_homed() { return (axis().flags & kHomedBits) != 0; }
-  /// What the board believes less where the drive is, mm.
+  /// Position on the board minus position of the drive, mm.
   double offset_mm() {
     return static_cast<double>(axis().counts()) * firmware_test::kEncoderResolution_mm - bench.board.plant(0).truth().x;
   }
@@ -58,7 +58,7 @@ class HomingOfABoard : public testing::Test, public HomingBench<Scalar> {};
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(HomingOfABoard, Scalars);
 
-/// Home is at `place` of the drive, and called 100 mm.
+/// Home is at `place` of the drive, and has the position 100 mm.
 struct FoundCase {
   int mode;
   double velocity, place;

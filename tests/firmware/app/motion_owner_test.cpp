@@ -1,4 +1,4 @@
-// Two clients and one board: looking is everybody's, motion is one's.
+// Two clients and one board: both may read, but only one owns the motion.
 #include <gtest/gtest.h>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"
@@ -139,7 +139,7 @@ TEST_F(TwoClients, ALiveParameterDoesNotExcuseALatePeriod) {
   firmware::ParameterValues values = bench.application.active();
   set(values, "host.standing_timeout", 30);
   ASSERT_EQ(bench.download(values).status, Status::ok);
-  bench.board.advance();  // a period that nobody ran
+  bench.board.advance();  // a lost control period
   bench.run(1);
   EXPECT_EQ(fault(), static_cast<std::uint8_t>(AxisFault::control_overrun));
 }

@@ -1,4 +1,4 @@
-// The simulated board with what real ones live with: sparks on every input, an encoder whose scale creeps.
+// The simulated board with disturbances of real ones: noise spikes on every input, an encoder with a drifting scale.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace firmware_test {
 
-/// Sparks last one or two control periods, and come every ten seconds or so on each line.
+/// Noise spikes last one or two control periods, and occur about every ten seconds on each line.
 class Sparks {
  public:
   explicit Sparks(std::uint64_t seed) : random_(seed), until_(next()) {}
@@ -49,7 +49,7 @@ class NoisyAxis {
       return {static_cast<std::uint32_t>((passed > 0 ? turn : turn + 1) * kSpacing), true, passed < -1 || passed > 1};
     }
     std::int64_t counts() const { return plant_.encoder_counts() + creep; }
-    std::int64_t creep = 0;  ///< the scale has moved so many counts against the machine
+    std::int64_t creep = 0;  ///< displacement of the scale relative to the machine, counts
 
    private:
     static std::int64_t turn_of(std::int64_t counts) {

@@ -25,7 +25,7 @@ using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
 
-/// Sectors as small as they may be: what lies beyond the set matters to nothing.
+/// The smallest possible sectors, because memory beyond the set is not used.
 SimulatedFlash blank_flash() { return SimulatedFlash(2, 2048, 4); }
 
 /// A set in which every parameter differs from every other generation's.
@@ -151,7 +151,7 @@ TEST(PowerCut, AtEveryOperationOfTheFirstSaveEverLeavesNothingOrTheNewSet) {
   cut_everywhere(blank_flash(), ParameterValues{}, StoreState::empty);
 }
 
-/// A cut in a save, and another in the save that the user tries next.
+/// A power cut during a save, and another during the user's next attempt.
 TEST(PowerCut, TwiceInARowLeavesOneOfTheSetsThatWereSaved) {
   SimulatedFlash before = blank_flash();
   save(before, generation(1));

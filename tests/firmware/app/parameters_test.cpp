@@ -1,4 +1,4 @@
-// The table of parameters: identity, ranges, and that every one of them does something.
+// The table of parameters: identity, ranges, and that each of them has an effect.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -36,8 +36,8 @@ sim::DriveDescription machine() {
   return drive;
 }
 
-/// Everything that the machine notices of a set: whether it is refused, every word put out in both directions of
-/// motion, with limits and saturation reached, and where the monitors trip.
+/// The complete effect of a set on the machine: whether it is refused, all codes of the converter in both directions of
+/// motion, including limits and saturation, and the thresholds of the monitors.
 template <typename Scalar>
 std::pair<SetRefusal, std::vector<std::int32_t>> behaviour(const ParameterValues& values) {
   const SetRefusal problem = firmware::check<Scalar>(values);
@@ -104,7 +104,7 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   set(values, "x.monitor.oscillation", 1.5);
   const auto before = behaviour<TypeParam>(values);
   ASSERT_EQ(before.first, SetRefusal{});
-  ParameterValues compensated = values;  // presliding takes the place of friction.blend
+  ParameterValues compensated = values;  // presliding replaces friction.blend
   compensate(compensated);
   const auto before_compensated = behaviour<TypeParam>(compensated);
   ASSERT_EQ(before_compensated.first, SetRefusal{});

@@ -1,4 +1,4 @@
-// Paths on the simulated board, asked for in reports: both number types, a host that dies, nodes that fail to come.
+// Paths on the simulated board, requested by reports: both number types, a host that ends, nodes that do not arrive.
 #include <gtest/gtest.h>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"
@@ -73,7 +73,7 @@ class PathOnBoard : public testing::Test {
     for (int k = 0; k < nodes; ++k) ASSERT_EQ(send_next(), Status::ok);
   }
 
-  /// Steps, with what the references were seen to be off the circle.
+  /// Runs steps; returns the largest distance of the references from the circle.
   void run(int periods) {
     for (int k = 0; k < periods; ++k) {
       bench.run(1);
@@ -117,7 +117,7 @@ class PathOnBoard : public testing::Test {
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(PathOnBoard, Scalars);
 
-/// What an older host's node says is not what this board would read.
+/// This board would misread the nodes of an older host.
 TYPED_TEST(PathOnBoard, RefusesAHostThatWritesNodesAnotherWay) {
   firmware::OpenPathRequest request{3, 1, {}};
   EXPECT_EQ(this->bench.ask(MessageType::open_path, request).status, Status::ok);
@@ -141,7 +141,7 @@ TYPED_TEST(PathOnBoard, EndsExactlyWhereItLeads) {
   EXPECT_TRUE(this->bench.application.axes()[0].is_at_rest());
 }
 
-/// Catches axes that are each stopped for themselves, which leaves the circle, and a fault that never comes.
+/// Catches axes that stop independently and so leave the circle, and a fault that does not occur.
 TYPED_TEST(PathOnBoard, StandsOnThePathWhenTheHostDiesAndThenSaysSo) {
   ASSERT_EQ(this->open(), Status::ok);
   this->send(this->pieces());

@@ -1,4 +1,4 @@
-// Tables of pitch errors on the simulated board: loaded, kept, refused, and what they do to an axis whose screw is off.
+// Tables of pitch errors on the simulated board: loaded, kept, refused, and their effect on an axis with a screw error.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -15,8 +15,8 @@ using firmware::PitchPoint;
 using firmware::Status;
 using firmware_test::kEncoderResolution_mm;
 
-/// A screw and its nut: the table lags by half of a play behind the motor, and is where the screw's error leads it.
-/// Long errors of the pitch, short ones of the thread.
+/// A screw and its nut: the table lags by half of a play behind the motor, and has the screw's error. Long errors of
+/// the pitch, short ones of the thread.
 class Screw {
  public:
   explicit Screw(double phase) : phase_(phase) {}
@@ -80,7 +80,7 @@ struct Machine {
     ASSERT_EQ(bench.application.axes()[axis].fault(), firmware::AxisFault::none) << x_mm;
   }
 
-  /// As a laser interferometer is used: to each place from below, then to each from above.
+  /// As with a laser interferometer: to each position from below, then to each from above.
   struct Deviation {
     double x_mm, forward_mm, backward_mm;
   };
@@ -208,7 +208,7 @@ TYPED_TEST(PitchOnBoard, BringsTheTableToItsPlace) {
   EXPECT_LT(worst_um(between), 2.5 + 1.4);
 }
 
-/// How far the table is from the circle that was wanted, while both axes follow it.
+/// Distance of the table from the commanded circle, while both axes follow it.
 template <typename M>
 double circle_error_um(M& machine) {
   const firmware_test::Circle circle{10'000, 12'000};
@@ -368,7 +368,7 @@ TYPED_TEST(PitchOnBoard, SwitchNeedsATableOfThisEncoder) {
   EXPECT_EQ(machine.bench.download(values).status, Status::ok);
 }
 
-/// The way to a limit of travel is the table's: what the correction adds on top is no fault.
+/// Limits of travel apply to the table's position: the additional correction causes no fault.
 TYPED_TEST(PitchOnBoard, MayReachTheLimitOfTravel) {
   auto& machine = this->machine;
   // 20 and 25 counts short: the motor has to go beyond the limits.

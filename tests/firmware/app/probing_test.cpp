@@ -1,4 +1,4 @@
-// A touch probe on the simulated board: where its edge came, exact to a count, and what happens when none comes.
+// A touch probe on the simulated board: position of its edge, exact to a count, and motion without an edge.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ class Probing : public testing::Test {
     }
   }
   std::int64_t counts(std::size_t axis) { return bench.application.axes()[axis].telemetry().encoder_counts; }
-  /// What the encoder of the axis shows there.
+  /// Reading of the axis's encoder there.
   std::int64_t counts_of(double travel_mm, std::size_t axis = 0) const {
     return static_cast<std::int64_t>(std::floor(travel_mm / firmware_test::kEncoderResolution_mm)) + origin[axis];
   }
@@ -118,7 +118,7 @@ class Probing : public testing::Test {
   }
   bool is_at_rest(std::size_t axis = 0) { return (bench.status().axis[axis].flags & firmware::kAxisAtRest) != 0; }
   double travel_mm() { return bench.board.plant(0).truth().x; }
-  /// x stands in closed loop, no farther behind the surface than its ramp from there takes (as of a path, above).
+  /// x stands in closed loop, beyond the surface by at most its stopping distance (as for a path, above).
   void expect_stopped_behind(double surface_mm, double speed) {
     run(600);
     EXPECT_TRUE(is_at_rest());
@@ -163,7 +163,7 @@ TYPED_TEST(Probing, IsExactToACountAtAnySpeedAndInBothDirections) {
         EXPECT_GE(this->met_at(1), this->y_then.first) << "y is latched with it";
         EXPECT_LE(this->met_at(1), this->y_then.second);
         EXPECT_GT(this->y_then.second - this->y_then.first, 5);
-        // The ramp of core/path/README.md, three periods until the input is believed, and what the axis lags behind.
+        // The stopping distance of core/path/README.md, three periods of the input filter, and the following error.
         this->run(100);
         const double beyond_mm =
             firmware_test::kEncoderResolution_mm * std::abs(static_cast<double>(this->counts(0) - this->met_at(0)));
@@ -243,7 +243,7 @@ TYPED_TEST(Probing, ASparkIsForgotten) {
   EXPECT_EQ(this->met_at(0), this->counts_of(20.0009));
 }
 
-/// There is no time left to see whether it lasts.
+/// There is no time left to filter the input.
 TYPED_TEST(Probing, AContactInTheLastPeriodCounts) {
   this->fit(ProbeContact::closes);
   ASSERT_EQ(this->start(ProbeStop::contact, kWay_mm, 1000), Status::ok);
@@ -255,7 +255,7 @@ TYPED_TEST(Probing, AContactInTheLastPeriodCounts) {
   EXPECT_TRUE(this->has_met());
 }
 
-/// A probe that is driven into something stops the path; one that is pulled off does not.
+/// A probe that makes contact stops the path; one that loses contact does not.
 TYPED_TEST(Probing, AContactOnAnyOtherPathStopsIt) {
   this->bench.board.put_surfaces({{0, 10.0, false}, {0, 25.0, true}});
   this->fit(ProbeContact::closes);
@@ -285,7 +285,7 @@ TYPED_TEST(Probing, AContactStopsAJog) {
   EXPECT_TRUE(this->is_at_rest(1));
 }
 
-/// Away from what it touches, and against it again.
+/// Away from the surface, and against it again.
 TYPED_TEST(Probing, AJogLeavesWhatTheProbeTouches) {
   this->bench.board.put_surfaces({{0, 10.0, true}});
   this->fit(ProbeContact::closes);
@@ -319,7 +319,7 @@ TYPED_TEST(Probing, AContactStopsHomingAndThereIsNoHome) {
   EXPECT_EQ(this->bench.status().axis[0].flags & (firmware::kAxisHomed | firmware::kAxisHoming), 0);
 }
 
-/// The path's watch is not the jog's end.
+/// The monitoring for the path must not end the jog.
 TYPED_TEST(Probing, AJogIsWatchedOnOnceAProbingPathOfAnotherAxisHasEnded) {
   this->bench.board.put_surfaces({{0, 40.0, true}});
   this->fit(ProbeContact::closes);
@@ -346,12 +346,12 @@ TYPED_TEST(Probing, WithoutAProbeNothingStopsAJog) {
   EXPECT_GT(this->travel_mm(), 20.0);
 }
 
-/// A probe whose edge reaches no timer stops the path all the same, and no position is claimed.
+/// A probe whose edge reaches no timer also stops the path, but no position is reported.
 TYPED_TEST(Probing, AnEdgeThatWasNotLatchedGivesNoPosition) {
   this->fit(ProbeContact::closes);
   ASSERT_EQ(this->start(ProbeStop::contact, kWay_mm, 1000), Status::ok);
   this->run(400);
-  this->bench.board.touch(true);  // a spark, which the encoders still hold
+  this->bench.board.touch(true);  // a noise spike, which the encoders have latched
   this->bench.board.touch(false);
   this->run(20);
   this->bench.board.probe().arm(false);

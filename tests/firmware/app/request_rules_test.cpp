@@ -1,4 +1,4 @@
-// Every message there is, from its owner and from a stranger: what is refused, by whom, and that nothing else is known.
+// Every message, from the owner and from another client: which ones are refused, and that there are no others.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -19,8 +19,8 @@ constexpr std::uint16_t kOwner = 1, kStranger = 2;
 /// 600 ms at 50 mm/s in all, of x alone.
 constexpr firmware::PathUnits kUnits{8, 20, 26};
 
-/// Payload bytes, and what a stranger hears while the owner's axis moves and the owner captures; from the protocol's
-/// page, not from the table under test.
+/// Payload size, and the reply to another client while the owner's axis moves and the owner captures; from the
+/// protocol's page, not from the table under test.
 struct Expected {
   int length = 0;
   Status stranger = Status::ok;
@@ -111,7 +111,7 @@ class Requests : public testing::Test {
   Status open(std::uint16_t client) {
     return ask(client, MessageType::open_path, firmware::OpenPathRequest{1, 1, kUnits});
   }
-  /// A millimetre to and fro ends where it began; at rest at its ends.
+  /// A millimetre back and forth, at rest at both ends.
   Status load_path(std::uint16_t client) {
     constexpr std::array<std::uint32_t, 4> kOut{200u << firmware::kPathTimeBits, 400u << 8, 0, 0};
     constexpr std::array<std::uint32_t, 4> kBack{200u << firmware::kPathTimeBits | firmware::kLastNode,
@@ -186,7 +186,7 @@ TEST_F(Requests, AStrangerMayLookStopAndDisableAndNothingElse) {
   }
 }
 
-/// Only the number comes back in replies, which everybody sees.
+/// Replies, which every client sees, contain only the number.
 TEST_F(Requests, ANumberThatWasOverheardIsNoPass) {
   bench.pass = 77;
   ASSERT_EQ(ask(kOwner, MessageType::jog, kJog), Status::ok);
@@ -241,7 +241,7 @@ TEST_F(Requests, APathDoesNotOutliveItsEnables) {
   EXPECT_EQ(ask(kOwner, MessageType::jog, kJog), Status::ok) << "nothing leads the axis any more";
 }
 
-/// An emergency stop takes the enable; what was loaded before it is gone after it.
+/// An emergency stop drops the enable; nodes and entries that were loaded before are discarded.
 TEST_F(Requests, APathDoesNotOutliveAFault) {
   ASSERT_EQ(open(kOwner), Status::ok);
   ASSERT_EQ(load_path(kOwner), Status::ok);
@@ -303,7 +303,8 @@ TEST_F(Requests, ATriggeredCaptureIsItsClientsUntilThatOneLetsGo) {
   EXPECT_EQ(ask(kOwner, MessageType::arm_trigger, request), Status::ok) << "the other has died";
 }
 
-/// Of a chip that may do anything while its supply fails nothing is enabled, and what would move an axis is not taken.
+/// On a chip that may do anything while its supply fails, no drive is enabled, and requests that move an axis are
+/// refused.
 TEST_F(Requests, NothingMovesWithoutBrownOutReset) {
   firmware::ProtocolServer<Bench::Application> server(bench.application, bench.image, {.lacks_brown_out_reset = true});
   for (const auto& [type, expected] : kMessages) {

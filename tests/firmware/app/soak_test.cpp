@@ -1,5 +1,5 @@
-// A day of motion: no false trip, and nothing drifts. AXIS_SOAK_HOURS (a minute by default) and AXIS_SOAK_SEED say how
-// long, and which day; `make soak` takes 24 hours.
+// A day of motion: no false fault, and no drift. AXIS_SOAK_HOURS (default: a minute) and AXIS_SOAK_SEED set duration
+// and seed; `make soak` takes 24 hours.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -48,7 +48,7 @@ firmware::ParameterValues values() {
   return wanted;
 }
 
-/// What a cycle of motion showed.
+/// Results of a cycle of motion.
 struct Spread {
   double error_sum = 0.0;
   std::uint64_t samples = 0;
@@ -56,7 +56,7 @@ struct Spread {
   double mean_error() const { return error_sum / static_cast<double>(samples); }
 };
 
-/// A host whose requests come when they come: 1 to 180 ms apart, where the board waits for 200.
+/// A host with irregular requests: 1 to 180 ms apart; the board's time-out is 200 ms.
 class Day {
  public:
   explicit Day(std::uint64_t seed)
@@ -204,7 +204,7 @@ class Day {
     }
   }
 
-  /// The axis where it was sent, its counts where they were at home.
+  /// The axis at its target, and its counts unchanged relative to home.
   void expect_at(std::size_t i, std::int64_t target) {
     const auto& seen = application_.axes()[i].telemetry();
     ASSERT_EQ(seen.reference.counts, target);

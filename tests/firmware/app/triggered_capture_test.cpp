@@ -1,4 +1,4 @@
-// Captures in the board's memory: the sample of the event, what was before it, and what a reset leaves.
+// Captures in the board's memory: the sample of the event, the rows before it, and their survival of a reset.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -153,7 +153,7 @@ TEST_F(TriggeredCapture, FourChannelsOfTwoThousandSamplesFitWithoutLoss) {
   EXPECT_EQ(arm(), Status::malformed) << "more than there is room for";
 }
 
-/// A board that keeps its memory over a reset tells afterwards what the last capture saw.
+/// A board that keeps its memory over a reset can return the last capture afterwards.
 TEST(TriggeredMemory, OutlivesAResetIfItIsSoundAndTheTriggerHadCome) {
   auto memory = std::make_unique<firmware::TriggeredMemory>();
   firmware::TriggerRequest request{};

@@ -1,4 +1,4 @@
-// Where each monitor of an axis trips, found by raising what it watches little by little.
+// Thresholds of the monitors of an axis, found by raising their inputs gradually.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace firmware_test {
 
-/// One number a monitor: the step of a geometric ramp at which it trips first, or how many samples it bears.
+/// One number per monitor: the step of a geometric ramp at which it trips first, or the number of tolerated samples.
 template <typename Scalar>
 std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& parameters) {
   using Telemetry = firmware::AxisTelemetry<Scalar>;

@@ -1,4 +1,4 @@
-// The axis board's own code, from start-up to control, on a chip that answers and with everything wired to its pins.
+// The axis board's own code, from start-up to control, on a simulated chip with all parts wired to its pins.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,7 +14,7 @@ void reset_processor() { throw parts::ChipReset("software"); }
 
 }  // namespace firmware::boards
 
-/// TinyUSB's place; it has tests of its own.
+/// Replaces TinyUSB, which has separate tests.
 namespace hal::tinyusb {
 
 namespace {
@@ -69,7 +69,7 @@ class AxisBoard : public testing::Test {
     board.start_watchdogs();
   }
 
-  /// The background for so long, as main.cpp runs it, in rounds that take so long.
+  /// Runs the background as main.cpp does, for this time, in rounds of this duration.
   void run_ms(double time_ms, bool outputs_off = false, double round_ms = 0.1) {
     double fed_at_ns = chip.bus.now_ns();
     for (double left = time_ms; left > 0.0; left -= round_ms) {
@@ -234,7 +234,7 @@ TEST_F(AxisBoard, SavingParametersDoesNotEndInAReset) {
   EXPECT_TRUE(chip.window_watchdog.is_running());
 }
 
-/// Sparks of an amplifier, at any phase, and a plug that was pulled.
+/// Noise spikes of an amplifier, at any phase, and an unplugged cable.
 TEST_F(AxisBoard, OnlyAComputerThatStaysAwayIsGone) {
   start();
   chip.port_a.put(8, Outside::high);
@@ -323,7 +323,7 @@ TEST_F(AxisBoard, AnAbsentConverterLeavesItDisabled) {
   EXPECT_FALSE(board.axis(0).dac().is_healthy());
 }
 
-/// An input that moves to such a pin, or a resistor that goes, is a short circuit at the next download.
+/// If an input is moved to such a pin, or its resistor is removed, the next download causes a short circuit.
 TEST_F(AxisBoard, InputsThatTheRomsLoaderDrivesHaveAResistor) {
   struct LoaderOutput {
     const char* pin;

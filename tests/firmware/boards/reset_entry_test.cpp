@@ -48,7 +48,7 @@ TEST(ResetEntry, OfAProcessorFaultSaysWhereAndWhat) {
   EXPECT_EQ(watchdog.activity, 2) << "y was enabled";
 }
 
-/// Catches a log that a program fills which fails at every start.
+/// Catches a log that is filled by a program that fails at every start.
 TEST(ResetEntry, EndsAfterManyResetsInARow) {
   LastRun run = run_that_ended_by(ResetCause::fault);
   run.resets = firmware::boards::kMostLoggedResets;

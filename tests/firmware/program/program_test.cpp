@@ -1,5 +1,5 @@
-// The program that ships, from its start on, on a chip that answers: firmware/boards/program and the axis board's own
-// code, unchanged, with the interrupts where the vector table has them.
+// The shipped program from its start, on a simulated chip: firmware/boards/program and the axis board's own code,
+// unchanged, with the interrupts of the vector table.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -19,7 +19,7 @@ void adc_interrupt();
 void usb_interrupt();
 }
 
-// What the linker script gives for captures.
+// The memory for captures from the linker script.
 asm(".bss\n .balign 8\n .globl _capture_rows, _capture_end\n _capture_rows: .skip 40960\n _capture_end:\n .text\n");
 
 namespace {
@@ -31,10 +31,10 @@ using parts::ChipReset;
 using parts::Drive;
 using parts::Outside;
 
-/// Thrown out of the background: the test has seen enough.
+/// Thrown from the background to end the test.
 struct Enough {};
 
-/// What stands in for the parts of the image that are the processor's own, and for TinyUSB.
+/// Replacements for the processor-specific parts of the image, and for TinyUSB.
 struct StandIn {
   firmware::ImageState image = firmware::ImageState::whole;
   bool faults_are_armed = false;
@@ -118,7 +118,7 @@ class ShippedProgram : public testing::Test {
   }
   void TearDown() override { EXPECT_EQ(chip.bus.complaints(), std::vector<std::string>{}); }
 
-  /// What must be done before the first control period.
+  /// Work that must be done before the first control period.
   void begin_control() {
     EXPECT_TRUE(seen.faults_are_armed);
     EXPECT_EQ(application.active().get<"control.rate">(), stored_rate_Hz) << "parameters come out of the store first";

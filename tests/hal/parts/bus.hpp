@@ -1,5 +1,5 @@
-// The chip's bus as the drivers under test see it: each access to a register arrives here, takes its time, and is
-// answered by the part that lies at that address. Parts know their manuals, never the drivers' headers.
+// The chip's bus for the drivers under test: each access to a register arrives here, takes its time, and is answered by
+// the part at that address. Parts are written from their manuals and never include the drivers' headers.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class Part {
   /// `offset` in bytes from the part's base. All that happens before this instant has happened: run() was called.
   virtual std::uint32_t read(std::uint32_t offset) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
-  /// Lets the part's own time pass until now.
+  /// Advances the part's own time until now.
   virtual void run(double /*now_ns*/) {}
   /// As after a reset of the chip, or by the part's bit in the reset registers.
   virtual void reset() = 0;
@@ -48,7 +48,7 @@ class Bus {
   void write(std::uintptr_t address, std::size_t size, std::uint32_t value);
 
   double now_ns() const { return now_ns_; }
-  /// The processor does something else meanwhile.
+  /// Time passes while the processor does something else.
   void pass_ns(double time_ns);
   void pass_ms(double time_ms) { pass_ns(1e6 * time_ms); }
 
@@ -60,10 +60,10 @@ class Bus {
   /// Time that an access takes: four processor clocks, load or store and the bridge to a peripheral bus.
   void set_processor_clock(double clock_Hz) { access_ns_ = 4e9 / clock_Hz; }
 
-  /// What no manual allows. Tests that expect none say so at their end.
+  /// Reports an access that no manual allows. Tests check at their end that there was none.
   void complain(const std::string& what);
   const std::vector<std::string>& complaints() const { return complaints_; }
-  /// The complaints so far, which the test has seen.
+  /// Returns and clears the complaints so far.
   std::vector<std::string> take_complaints();
 
  private:

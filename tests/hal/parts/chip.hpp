@@ -1,4 +1,4 @@
-// The STM32F405 of the axis board with what hangs on it, as far as the drivers reach: parts at their addresses (RM0090,
+// The STM32F405 of the axis board with the connected parts that the drivers use: parts at their addresses (RM0090,
 // 2.3), their clock enables and resets (7.3), their wires. `Chip chip;` in a test, and the drivers run.
 #pragma once
 
@@ -25,10 +25,10 @@ class Chip {
   /// Clocks at 168 MHz and every peripheral's clock on, as if start-up had run: for tests of single drivers.
   void run_at_full_speed();
 
-  /// Lets time pass, in steps short enough that interrupts come when they should.
+  /// Advances time, in steps short enough for interrupts to occur on time.
   void pass_ms(double time_ms);
 
-  /// The USB controller has something to report.
+  /// The USB controller has an event to report.
   void usb_event();
 
   /// The probe's contact at PB6 closes to ground or opens, for this long.

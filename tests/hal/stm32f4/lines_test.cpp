@@ -1,4 +1,4 @@
-// Digital lines, and what broken wires look like on them.
+// Digital lines, and their readings with broken wires.
 #include "hal/cortex_m/cycle_meter.hpp"
 #include "hal/stm32f4/charge_pump.hpp"
 #include "hal/stm32f4/drive_lines.hpp"

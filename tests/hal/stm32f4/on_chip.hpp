@@ -14,7 +14,7 @@ class OnChip : public testing::Test {
   parts::Chip chip;
 };
 
-/// Clocks and peripherals run as start-up leaves them.
+/// Clocks and peripherals run as after start-up.
 class OnRunningChip : public OnChip {
  protected:
   void SetUp() override { chip.run_at_full_speed(); }

@@ -34,7 +34,7 @@ class Probe : public driver_test::OnRunningChip {
   EncoderTimer x{timer2(), 3}, y{timer5(), 2};
 };
 
-/// A contact that bounces closes several times; only where it first did is where the probe touched.
+/// A bouncing contact closes several times; the probe touched at the first closing.
 TEST_F(Probe, LatchesBothEncodersAtTheFirstEdgeAlone) {
   probe.arm(true);
   EXPECT_FALSE(probe.has_latched());

@@ -1,4 +1,4 @@
-// Both watchdogs, which end the run when they are not fed as they want.
+// Both watchdogs, which end the run if they are not fed as required.
 #include "hal/stm32f4/watchdog.hpp"
 
 #include "tests/hal/stm32f4/on_chip.hpp"
@@ -20,7 +20,7 @@ TEST_F(IndependentWatchdog, BitesAfterItsTimeAndNotBefore) {
   EXPECT_THROW(chip.pass_ms(2.0), ChipReset);
 }
 
-/// Datasheet, table 35: the oscillator runs at 17 to 47 kHz. Nobody may take longer than the quickest.
+/// Datasheet, table 35: the oscillator runs at 17 to 47 kHz. No caller may take longer than the fastest one allows.
 TEST_F(IndependentWatchdog, BitesBetween34And95MillisecondsOverTheOscillatorsTolerance) {
   hal::stm32f4::Watchdog watchdog(independent_watchdog());
   chip.independent_watchdog.oscillator_Hz = 47e3;

@@ -1,5 +1,5 @@
-// Two drives that differ by a factor of two in inertia and friction, and in what lets their loops be fast: lines and
-// circles of the firmware's axes on the plants, with each axis' best loop and with one loop for both.
+// Two drives that differ by a factor of two in inertia and friction, and in the possible bandwidth of their loops:
+// lines and circles of the firmware's axes on the plants, with each axis' best loop and with one loop for both.
 #include "host/axes/machine_design.hpp"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ TEST_P(Machine, OneLoopKeepsCirclesRound) {
     }
 }
 
-/// Where neither friction nor the encoder's step hides it, the forecast is what the plants do.
+/// If neither friction nor the encoder's step hides it, the forecast agrees with the plants.
 TEST_P(Machine, TheForecastIsWhatTheAxesDo) {
   const host::MachineDesign design = designed(quiet_machine(), GetParam());
   for (const host::LoopSet* set : {&design.own, &design.matched})

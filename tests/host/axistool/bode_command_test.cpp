@@ -1,4 +1,4 @@
-// axistool bode on a simulated board, and on the records that it leaves.
+// axistool bode on a simulated board, and on the records that it writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

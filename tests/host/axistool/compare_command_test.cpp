@@ -75,7 +75,7 @@ TEST_F(Compare, SeveralRecordsGetAFileEach) {
   EXPECT_EQ(lines_of(folder.path("p-2-train-jog.csv")).size(), lines_of(jog).size());
 }
 
-/// The rows behind the last whole window are predicted too; what reaches back before a window needs weights there.
+/// The rows after the last whole window are predicted, too; effects that reach back before a window need weights there.
 TEST_F(Compare, PredictionsEndWithWhatIsLeftOfAWindow) {
   const auto lines = lines_of(record);
   std::string cut = "# format: axis-record/1\n# sample_period_s: 0.001\n";
@@ -91,7 +91,7 @@ TEST_F(Compare, PredictionsEndWithWhatIsLeftOfAWindow) {
   EXPECT_EQ(lines_of(predictions).size(), 1533u);
 }
 
-/// A first capture is often one: nothing slides, so nothing can be asked of a regression.
+/// A first capture is often such a record: nothing slides, so no regression is possible.
 TEST_F(Compare, ARecordAtRestIsSaidToBeOne) {
   std::string rest = "# format: axis-record/1\n# sample_period_s: 0.001\nt_s,u_V,x_mm,w_rad_s\n";
   for (int k = 0; k < 1500; ++k)
@@ -137,7 +137,8 @@ TEST_F(Compare, SeveralModelsStandBesideEachOther) {
   EXPECT_THAT(host::read_file(report), HasSubstr("\"name\":\"heavy.toml\""));
 }
 
-// A model by hand does not say what it was fitted to: the record that judges it must not train it next.
+// A hand-written model does not state its training records: the record that validates it must not be proposed for
+// training.
 TEST_F(Compare, TheNextCommandNamesTheFilesThatWereGivenAndTrainsOnNone) {
   const std::string copy = folder.path("my drive.toml");
   std::string heavy = host::read_file(model);

@@ -36,7 +36,7 @@ class DeviceCommands : public testing::Test {
     return file("params.toml");
   }
 
-  /// The design on the board, which is patient: a loaded computer must not look like a lost host.
+  /// The design on a board with long time-outs, so that a loaded computer does not look like a lost host.
   void fit() const { ASSERT_EQ(run("set-params " + design() + " host.timeout=5").exit_code, 0); }
 
   /// Of a capture that has not ended.
@@ -150,7 +150,7 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_EQ(json("faults")["axes"][0]["fault"], "none");
 }
 
-/// The log outlasts what the fault itself does not: its clearing, saves, and a pulled plug.
+/// The log survives the clearing of the fault, saves, and a power failure.
 TEST_F(DeviceCommands, FaultsAreLogged) {
   ASSERT_EQ(run("set-params " + design() + " host.timeout=0.2 --save").exit_code, 0);
   EXPECT_TRUE(json("faults")["log"].empty());
@@ -246,7 +246,7 @@ TEST_F(DeviceCommands, TellAboutTheBoard) {
   EXPECT_EQ(run("clear-faults").exit_code, 0);
 }
 
-/// No command may believe that a board has two axes.
+/// No command may assume that a board has two axes.
 class AxesOfABoard : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Counts, AxesOfABoard, testing::Values(1, 3));
 

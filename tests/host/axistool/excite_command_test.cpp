@@ -1,4 +1,4 @@
-// axistool excite on simulated boards that know nothing of their drives.
+// axistool excite on simulated boards that have no parameters of their drives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ class Excite : public testing::TestWithParam<Drive> {
 std::string name_of(const testing::TestParamInfo<Drive>& info) { return "Drive" + std::to_string(info.index); }
 INSTANTIATE_TEST_SUITE_P(Drives, Excite, testing::ValuesIn(kDrives), name_of);
 
-/// The first record of a drive, made without a controller, is one that identifies it.
+/// The first record of a drive, made without a controller, suffices to identify it.
 TEST_P(Excite, StepsOnAnEmptyBoardIdentifyTheDrive) {
   const ProgramRun made =
       excite(std::string("x steps --yes --json - --box ") + GetParam().box + " --drive " + data_sheet(), "2>/dev/null");
@@ -108,7 +108,7 @@ TEST_P(ExciteRefuses, WithoutABoxOrUnitsOrConsent) {
   EXPECT_EQ(excite("x ladder --yes" + whole).exit_code, 8) << "a closed loop without a controller";
 }
 
-/// A box that the drive must leave: it says so, stops, and keeps what it saw.
+/// A box that the drive must leave: excite reports it, stops, and keeps the record so far.
 TEST_P(ExciteRefuses, ToGoOnOutsideTheBox) {
   const ProgramRun left =
       excite("x sine amplitude=6 frequency=0.5 --yes --box travel=4,speed=400,volts=6,time=3 --drive " + data_sheet());
@@ -135,7 +135,7 @@ class ExciteACoggingAxis : public Excite {};
 INSTANTIATE_TEST_SUITE_P(Drives, ExciteACoggingAxis, testing::ValuesIn(kCoggingDrives), name_of);
 
 /// Friction and cogging hold it at up to 1.2 V in one place and at 0.2 V in another. Catches a standstill in a cog that
-/// is taken for a jam.
+/// counts as a jam.
 TEST_P(ExciteACoggingAxis, GoesOnWhereItHangs) {
   for (const char* words : {"x ramp", "x sine", "x chirp", "x steps"}) {
     const ProgramRun done =

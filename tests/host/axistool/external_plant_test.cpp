@@ -1,4 +1,4 @@
-// Commands around a machine that is another program: the example in Python, and programs that misbehave.
+// Commands with another program as the machine: the example in Python, and programs that misbehave.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(AnotherProgramsMachine, StandsInForADriveOfAScenario) {
   EXPECT_EQ(run.exit_code, 0) << run.output;
 }
 
-/// A scenario from elsewhere is a file, not a program. Nothing of it may hide from who is asked, either.
+/// A foreign scenario must not run programs without consent, and the question must show all of the command line.
 TEST(AnotherProgramsMachine, OfAScenarioRunsOnlyWhereThatIsAgreedTo) {
   const TemporaryFolder folder;
   const std::string trace = folder.path("trace");

@@ -1,4 +1,4 @@
-// Faults put into the text of sound records: every command that reads records names them and claims nothing.
+// Faults inserted into the text of good records: every command that reads records names them and claims nothing.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ const Fault kFaults[] = {
 
 class FaultyLogs : public testing::TestWithParam<Fault> {
  protected:
-  /// Two training records and one that judges, each of them spoilt or not.
+  /// Two training records and one validation record, each with or without the fault.
   void write(bool spoils_training, bool spoils_validation) {
     constexpr std::size_t kRows = 5000;
     const auto put = [&](const char* name, bool spoilt) {
@@ -97,7 +97,7 @@ class FaultyLogs : public testing::TestWithParam<Fault> {
     put("validate.csv", spoils_validation);
   }
 
-  /// Runs a command and holds its answer against the fault.
+  /// Runs a command and compares its answer with the fault.
   void expect_named(const std::string& command, const std::string& output) {
     SCOPED_TRACE(command);
     const ProgramRun run = run_axistool(command + " --json -", "2>/dev/null");
@@ -141,7 +141,7 @@ TEST_P(FaultyLogs, AreNamedByWhatTrainsAndJudges) {
     const std::string records = fmt::format("{} --train {} {} --validate {}", model, file("train-jog.csv"),
                                             file("train-steps.csv"), file("validate.csv"));
     expect_named("diagnose " + records, "");
-    if (!GetParam().fatal) continue;  // what goes on is the same search
+    if (!GetParam().fatal) continue;  // the search that continues is the same
     expect_named("improve " + records + " -o " + file("out.toml"), "out.toml");
     expect_named(fmt::format("add {} cogging --train {} {} --validate {} -o {}", model, file("train-jog.csv"),
                              file("train-steps.csv"), file("validate.csv"), file("out.toml")),

@@ -1,4 +1,4 @@
-// axistool open beside what it prints: the files that it leaves.
+// The files that axistool open writes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 namespace {
 
-/// A log in counts whose set point gives their size: what it tells stands in the sheet, and the constant that was
-/// given.
+/// A log in counts whose set point gives their size: the data sheet contains the values from the log and the given
+/// constant.
 TEST(OpenCommand, LeavesADataSheetThatTheLogHasFilledIn) {
   const TemporaryFolder folder;
   std::string text = "t [s],Iq [A],Pos [inc],Set [mm]\n";
@@ -25,7 +25,7 @@ TEST(OpenCommand, LeavesADataSheetThatTheLogHasFilledIn) {
   EXPECT_NE(sheet.output.find("# torque_constant_Nm_per_A ="), std::string::npos) << sheet.output;
   EXPECT_NE(sheet.output.find("resolution_mm = 0.00125"), std::string::npos) << sheet.output;
   EXPECT_NE(sheet.output.find("sample_period_s = 0.001"), std::string::npos) << sheet.output;
-  // What was filled in by hand is not written over by the next log.
+  // The next log does not overwrite values that were filled in by hand.
   folder.write("x/sheet.toml", "filled in");
   ASSERT_EQ(run_axistool(fmt::format("open {} --yes -o {}", log, out)).exit_code, 0);
   EXPECT_EQ(run_program(fmt::format("cat {}/sheet.toml", out)).output, "filled in");

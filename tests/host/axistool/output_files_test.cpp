@@ -1,4 +1,4 @@
-// No command destroys what it was given, and what cannot be written is said before anything is computed.
+// No command overwrites its inputs, and an output that cannot be written is reported before any computation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -24,7 +24,7 @@ class OutputFiles : public testing::Test {
     fs::copy_file(kCase + "/validate.csv", other_record);
   }
 
-  /// Runs a command that must be refused as wrong usage and must leave its inputs byte by byte.
+  /// Runs a command that must be refused as wrong usage and must not change its inputs.
   void expect_inputs_kept(const std::string& arguments) {
     const std::string model_before = host::read_file(model), record_before = host::read_file(record);
     const ProgramRun run = run_axistool(arguments);
@@ -138,7 +138,7 @@ TEST_F(OutputFiles, TwoOutputsInOneFileAreRefused) {
   EXPECT_FALSE(fs::exists(folder.path("out")));
 }
 
-/// The records do not exist: a folder that is missing is said before they are looked for.
+/// The records do not exist: a missing output folder is reported before they are searched.
 TEST_F(OutputFiles, FoldersAreCheckedBeforeAnythingIsRead) {
   const std::string missing = folder.path("no/such/x");
   for (const std::string& line : std::vector<std::string>{
@@ -172,7 +172,7 @@ TEST_F(OutputFiles, NothingIsLeftBesideAnOutput) {
   EXPECT_EQ(files, 4u) << "model, two records, parameters";
 }
 
-/// What a program that was killed left is cleaned by the next one; what a living one writes is not touched.
+/// The next program removes partial files of a killed one, but does not touch those of a running one.
 TEST_F(OutputFiles, PartialFilesOfTheDeadGo) {
   const pid_t dead = ::fork();
   if (dead == 0) ::_exit(0);

@@ -42,8 +42,7 @@ class Plan : public testing::Test {
 
 const char* const kBox = " --box travel=80,speed=200,volts=4,time=8 ";
 
-/// Catches a run that excite cannot carry out, a record that diagnose does not know again, odds that are not taken
-/// over.
+/// Catches a run that excite cannot carry out, a record that diagnose does not recognise, odds that are not used.
 TEST_F(Plan, SeparatesMakesAndDecides) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   ASSERT_EQ(excite(std::string("steps") + " --box travel=80,speed=200,volts=4,time=3", "steps.csv").exit_code, 0);

@@ -41,7 +41,8 @@ class RunCommand : public testing::Test {
     return board_.run(command, streams);
   }
 
-  /// Both axes are the same drive, with a design for it. The board is patient: a loaded computer is no lost host.
+  /// Both axes have the same drive, with a design for it. The board has long time-outs, so that a loaded computer is
+  /// not a lost host.
   void fit() const {
     ASSERT_EQ(run_axistool("design " + kModel + " -o " + file("x.toml")).exit_code, 0);
     std::ifstream in(file("x.toml"));
@@ -60,7 +61,7 @@ class RunCommand : public testing::Test {
   SimulatedBoardProcess board_;
 };
 
-/// The paper's circle, over the protocol, streamed: as near as the same loop in one process comes to it.
+/// The paper's circle, streamed over the protocol: as accurate as the same loop in one process.
 TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
   fit();
   const std::string circle = written("circle.ngc", "F10200 G3 X0 Y0 I35 J0\nM2\n");  // 170 mm/s
@@ -85,8 +86,8 @@ TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
   EXPECT_THAT(run("info").output, testing::Not(HasSubstr("enabled")));
 }
 
-/// A circle of 44 s in a process of its own, which is sent a signal once the axis is seen to move: on a busy computer
-/// nobody knows when that is. Returns its exit code, or, negative, the signal that ended it.
+/// A circle of 44 s in a separate process, which gets a signal once the axis moves, because on a busy computer the time
+/// of this is unknown. Returns its exit code or, negative, the signal that ended it.
 int signalled_on_the_circle(const SimulatedBoardProcess& board, const std::string& program, const std::string& more,
                             int signal) {
   Child process = board.start("run " + program + more);
@@ -106,7 +107,7 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
 }
 
-/// A program on a terminal of its own, which is typed at.
+/// A program on its own terminal, with typed keys.
 class OnTerminal {
  public:
   explicit OnTerminal(const std::string& command) {
@@ -136,7 +137,7 @@ class OnTerminal {
   pid_t process_ = -1;
 };
 
-/// Keys change the speed of a path that runs: feeds and rapids apart, never beyond the plan.
+/// Keys change the speed of a running path: feeds and rapids separately, never beyond the plan.
 TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
@@ -159,7 +160,7 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
   EXPECT_LT(slowed, 2.05);
 }
 
-/// A feed hold is no motion of the path, and takes its time.
+/// The path does not move during a feed hold, but the time of the hold counts.
 TEST_F(RunCommand, TheClockGoesOnWhileTheFeedIsHeld) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
@@ -241,7 +242,7 @@ TEST_F(ProbingCommand, WhatIsThereAlreadyEndsTheLenientFormsAtOnce) {
   const auto probes = told("F600\nG38.2 X40\nG38.3 X45\nG91 G38.4 X-5\nG38.5 X-1\nM2\n")["probes"];
   ASSERT_EQ(probes.size(), 4u);
   for (const auto& probe : probes) EXPECT_EQ(probe["found"], true);
-  // Where the axis stands: past the edge by its stopping way.
+  // Position at rest: past the edge by the stopping distance.
   EXPECT_GT(probes[1]["position_mm"]["x"], probes[0]["position_mm"]["x"]);
   EXPECT_LT(probes[1]["position_mm"]["x"], 22.0);
   EXPECT_LT(probes[3]["position_mm"]["x"], probes[2]["position_mm"]["x"]);
@@ -293,7 +294,7 @@ TEST_F(ProbingCommand, ARapidIntoAWallIsStoppedAndNamed) {
   EXPECT_EQ(back.exit_code, 0) << back.output << "away from it again, once it is at rest";
 }
 
-/// Whoever kills the program leaves a board that stops by itself, and says why.
+/// If the program is killed, the board stops by itself and reports why.
 TEST_F(RunCommand, AKilledHostIsNamed) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();

@@ -1,4 +1,4 @@
-// axistool sim in a process of its own, as a user has it in another window.
+// axistool sim in a separate process, as in a user's other window.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A scale on the table of the simulated board, from the counts that the board sends to what is found in them.
+// A scale on the table of the simulated board, from the board's counts to the effects found in them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@ class UpdateCommand : public testing::Test {
  protected:
   std::string file(const char* name) const { return folder_.path(name); }
 
-  /// What the simulated board takes.
+  /// An image that the simulated board accepts.
   std::string image(const char* version) const {
     const std::string path = file(version);
     EXPECT_EQ(run_axistool("sim --write-image " + path + " --image-version " + version).exit_code, 0);

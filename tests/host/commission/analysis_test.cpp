@@ -1,4 +1,4 @@
-// What of the records a diagnosis is given.
+// The parts of the records that a diagnosis uses.
 #include <gtest/gtest.h>
 
 #include "host/commission/steps.hpp"
@@ -8,8 +8,8 @@
 
 namespace {
 
-/// Catches records that begin at rest: how a spring or a gap stood before them nobody knows, and a machine's own values
-/// then leave several floors.
+/// Catches records that begin at rest: the initial state of a spring or a gap is unknown, so even a machine's true
+/// values leave several noise floors.
 TEST(RecordsOfACommissioning, BeginInMotionForADiagnosis) {
   const TemporaryFolder folder;
   OwnBoard board;

@@ -1,4 +1,4 @@
-// What may go wrong on the way: the axis stands, the folder can be used, the message says what to do.
+// Failures during a commissioning: the axis stands, the folder can be used, and the message gives the remedy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -18,13 +18,13 @@ namespace {
 using host::ExitCode;
 using testing::HasSubstr;
 
-/// The folder opens, and what it says is done can be gone on from.
+/// The folder opens, and the commissioning can continue after the steps that it lists as done.
 void expect_usable(const std::string& name) {
   const host::CommissionFolder folder(name);
   EXPECT_EQ(folder.document().at("format"), "axis-commission/1");
 }
 
-/// An axis that its controller holds where it stands may stay enabled when the host goes.
+/// An axis that its controller holds at rest may stay enabled when the host ends.
 void expect_standing(OwnBoard& board) {
   board.link->wait(std::chrono::seconds(2));
   const double there = board.machine->position();
@@ -88,13 +88,13 @@ TEST(CommissioningGoesWrong, WhereTheUserInterruptsAndCanGoOn) {
   }
 }
 
-/// Moments at which something goes wrong: so many, or what AXIS_COMMISSION_TRIALS says.
+/// Number of failure times: this many, or AXIS_COMMISSION_TRIALS.
 int trials(int usual) {
   const char* wanted = std::getenv("AXIS_COMMISSION_TRIALS");
   return wanted != nullptr ? std::atoi(wanted) : usual;
 }
 
-/// The program dies, or its cable is pulled: nobody tells the board to stop, and it does.
+/// The program ends, or its cable is unplugged: the board stops without a request.
 TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   std::mt19937 random(11);
   for (int trial = 0; trial < trials(kInstrumented ? 2 : 20); ++trial) {
@@ -119,8 +119,8 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   }
 }
 
-/// No handler of the program runs: what it has not put into the folder by then is not there, and what is there is
-/// whole. A commissioning that was killed goes on, on a board that somebody switched on again.
+/// No handler of the program runs: files that are not yet in the folder are missing, and existing ones are complete. A
+/// killed commissioning can be continued on a board that was switched on again.
 TEST(CommissioningGoesWrong, WhereTheProgramIsKilledAtAnyMoment) {
   std::mt19937 random(17);
   for (int trial = 0; trial < trials(kInstrumented ? 2 : 10); ++trial) {

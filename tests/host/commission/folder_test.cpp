@@ -10,7 +10,7 @@
 
 namespace {
 
-/// Catches a command that ends with the page of the folder that its own is a copy of.
+/// Catches a command in a copied folder that names the page of the original folder at its end.
 TEST(CommissionFolder, NamesNoPageBeforeItsOwnIsWritten) {
   const TemporaryFolder folder;
   const std::string first = folder.path("first"), copy = folder.path("copy");

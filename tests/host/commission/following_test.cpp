@@ -21,7 +21,7 @@ host::Record moving(std::size_t rest, const std::vector<double>& behind) {
   return record;
 }
 
-/// Catches an error that counts the rest before the motion, or forgets the middle of the encoder's step.
+/// Catches an error that includes the rest before the motion, or ignores the middle of the encoder's step.
 TEST(FollowingError, IsOfTheMotionAlone) {
   sim::DataSheet data;
   data.encoder_resolution = 0.002;

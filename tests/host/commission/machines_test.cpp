@@ -61,8 +61,8 @@ std::vector<std::string> sentences_of(std::string page) {
   return sentences;
 }
 
-/// Catches positions that are not counted from home (then the compensation has another phase, or does not act), and
-/// a loop that is made livelier than the machine bears.
+/// Catches positions that are not counted from home (then the compensation has another phase, or does not act), and a
+/// loop with more bandwidth than the machine allows.
 TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board;
@@ -74,7 +74,7 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_TRUE(found.state["raised"].is_object());
   EXPECT_GT(found.state["raised"]["margins"]["measured"]["modulus"]["value"].get<double>(), 0.45);
   EXPECT_LT(found.state["motion_s"].get<double>(), 360.0);
-  // One quantity has one figure on the page, and no sentence stands there twice.
+  // Each quantity has one figure on the page, and no sentence occurs twice.
   std::vector<std::string> sentences = sentences_of(found.page);
   for (const double error : found.prediction_errors)
     EXPECT_THAT(sentences, testing::Contains(testing::AllOf(testing::HasSubstr("prediction error falls"),
@@ -84,7 +84,7 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_EQ(twice, sentences.end()) << (twice == sentences.end() ? "" : *twice);
 }
 
-/// Catches effects that are named where none is.
+/// Catches effects that are named although there are none.
 TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board;
@@ -93,7 +93,7 @@ TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
   EXPECT_THAT(found.effects(), testing::IsEmpty());
 }
 
-/// Catches a weight that is taken for friction, and a place-bound compensation that is promised without a home.
+/// Catches a weight that is taken for friction, and a position-dependent compensation that is promised without homing.
 TEST(CommissionedMachine, IsToldThatItCarriesAWeight) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board(hal::pc::AxisWiring{});

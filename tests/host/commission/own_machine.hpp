@@ -14,13 +14,13 @@
 #include "host/exit_codes.hpp"
 #include "host/simulated_board/simulated_link.hpp"
 
-/// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm; with magnets or a weight, if so wanted.
+/// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm; optionally with cogging or a weight.
 class OwnMachine : public sim::ForeignMotion {
  public:
   bool counts_backward = false;
   double cogging_Nm = 0.0;  ///< every 4 mm
   double weight_Nm = 0.0;
-  double seizes_at_s = HUGE_VAL;  ///< its bearing does, for good; of its own time
+  double seizes_at_s = HUGE_VAL;  ///< time at which its bearing seizes, in the machine's time
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
@@ -67,14 +67,14 @@ inline sim::DriveDescription own_sheet() {
   return {"own", data, {}};
 }
 
-/// A board that outlives the program that talks to it; its way may break after so many reports.
+/// A board that outlives its program; its link may break after a number of reports.
 struct OwnBoard {
   std::shared_ptr<OwnMachine> machine = std::make_shared<OwnMachine>();
   std::shared_ptr<host::SimulatedLink> link;
   long reports_left = -1;  ///< below 0: it does not break
   bool dies_then = false;  ///< the whole program, at once
 
-  /// With a home switch, which own_options() look for.
+  /// With a home switch, for which own_options() search.
   static hal::pc::AxisWiring usual_wiring() {
     hal::pc::AxisWiring wiring;
     wiring.home = 11.3;

@@ -1,4 +1,4 @@
-// The way that an axis needs when it is let go, against the way that it has.
+// The distance that an axis needs without current, compared with the free distance.
 #include "host/commission/stopping_room.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,8 @@ TEST(StoppingRoom, IsTheLongerOfBothWays) {
   EXPECT_THAT(refused, HasSubstr("Only 100 mm are free"));
   EXPECT_THAT(refused, HasSubstr("speed=79.8 in --box")) << "v^2 J / (2 r T) = 100 mm";
   host::StoppingFigures rough = kLight;
-  rough.friction = 20.0;  // let go it stops in 10 mm, and along the ramp in v^2 / (2 a) + v a / (2 j) = 20.6 mm
+  rough.friction =
+      20.0;  // without current it stops in 10 mm, and along the ramp in v^2 / (2 a) + v a / (2 j) = 20.6 mm
   EXPECT_EQ(refusal(rough, 250.0, 21.0), "");
   EXPECT_THAT(refusal(rough, 250.0, 20.0), HasSubstr("within 20.6 mm along its ramp"));
 }

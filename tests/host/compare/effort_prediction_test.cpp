@@ -1,4 +1,4 @@
-// Judging by effort, on motions whose effort is known in closed form.
+// Comparison by torque or force, on motions whose effort is known in closed form.
 #include "host/compare/effort_prediction.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ struct Strokes {
   }
 };
 
-/// The command that makes these strokes: sent before by the dead time, and by the half period that a hold adds.
+/// The command for these strokes: earlier by the dead time and by the half period of the hold.
 host::Record record_of(const Strokes& strokes) {
   host::Record record;
   record.path = "strokes.csv";
@@ -71,7 +71,7 @@ TEST(EffortPrediction, KnowsTheForceOfAMotionAndWhenItsCommandWasSent) {
   const double with = host::error_of(sim::Drive(right), set).combined;
   const double without = host::error_of(sim::Drive(model_with(0.0)), set).combined;
   EXPECT_LT(with, 0.2 * without);
-  // What is left of the right model is where the force jumps at a reversal: half of the windows have nothing of it.
+  // The residual of the right model is where the force jumps at a reversal; half of the windows do not contain it.
   std::vector<double> squares;
   for (const host::WindowScore& score : host::error_of(sim::Drive(right), set).windows) squares.push_back(score.effort);
   std::ranges::nth_element(squares, squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2));

@@ -1,4 +1,4 @@
-// What the best possible model would leave.
+// The error that the best possible model would leave.
 #include "host/compare/error_floor.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// A fit on its way may hold static friction that no drive overcomes, and a second mass that it throws about.
+/// During a fit, the model may have static friction that no drive overcomes, or an oscillating second mass.
 TEST(ErrorFloor, OfAModelThatRunsAwayIsANumber) {
   const host::Record record = HandMade::record(3.0);
   sim::DriveDescription model = HandMade::model();
@@ -34,7 +34,8 @@ sim::DriveDescription complete_motor() {
   return model;
 }
 
-// Noise of the current carries a light rotor far within a window: without it a complete model looks wrong by a factor.
+// Noise of the current moves a light rotor far within a window; if it is ignored, a complete model seems wrong by a
+// factor.
 TEST(ErrorFloor, HoldsTheNoiseOfAMeasuredCurrent) {
   const auto nothing = [](const Point&) { return 0.0; };
   const host::Record record = record_of(slow_turning, nothing, 0.0, 20.0, 3);

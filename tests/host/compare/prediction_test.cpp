@@ -1,4 +1,4 @@
-// Windows that are simulated side by side.
+// Windows that are simulated in parallel.
 #include "host/compare/prediction.hpp"
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ TEST(Prediction, OfAWindowIsTheSameInAnyCompany) {
   }
 }
 
-/// What the encoder adds and what the converter adds are known to the model: the error must not change by either, with
-/// one mass or with two.
+/// The model contains the errors of encoder and converter, so neither may change the prediction error, with one mass or
+/// with two.
 TEST(Prediction, IsAsGoodBehindAKnownErrorOfEncoderOrConverter) {
   constexpr double kWave_mm = 0.03, kPeriod_mm = 4.0, kOffset_V = 0.4;
   constexpr double kNear = 0.1;  // noise floors

@@ -1,4 +1,4 @@
-// What figures of a residual show, from residuals in closed form.
+// Figures of residuals that are known in closed form.
 #include "host/compare/residual_figures.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod_mm = 10.0;
 
-/// To and fro over 200 mm, with a friction that varies by 35 % of 2 Nm along each 10 mm.
+/// Motion to and fro over 200 mm. The friction varies by 35 % of 2 Nm along each 10 mm.
 ResidualEffort varying_friction() {
   ResidualEffort samples;
   for (int k = 0; k < 8000; ++k) {
@@ -31,7 +31,7 @@ double largest(const ScatterSeries& curve) {
   return most;
 }
 
-// Catches a mean over both directions, in which a friction that varies along the travel is a flat line at zero.
+// Catches a mean over both directions, in which friction that varies along the travel is a flat line at zero.
 TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
   const ResidualEffort samples = varying_friction();
   ResidualCoordinate over = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
@@ -43,7 +43,7 @@ TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
     EXPECT_NEAR(curves[0].y[k], -curves[1].y[k], 0.1);
 }
 
-// Catches bins along the travel whose means of a known ripple beat: eight a period show it in its full size.
+// Catches bins along the travel whose means beat with a known ripple. Eight bins for each period show its full size.
 TEST(DirectionCurves, AKnownRippleKeepsItsSizeAlongTheTravel) {
   const ResidualEffort samples = varying_friction();
   const auto along = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
@@ -61,7 +61,7 @@ TEST(ResidualCoordinate, TravelIsInMillimetresForBothKindsOfDrives) {
   EXPECT_EQ(coordinate_of("position", sim::DriveKind::linear).axis.unit, "mm");
 }
 
-// A ripple along the travel and its direction are two cells of a map, not one.
+// A map shows the same place in different cells for different speeds, so friction is not averaged over both directions.
 TEST(ResidualMaps, TellPositionAndSpeedApart) {
   const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
   Report report("test");

@@ -57,7 +57,7 @@ TEST(ResidualTests, AHardSpotIsNamedByItsPositionAlthoughItTurnsWithTheDirection
   EXPECT_GT(share_on(tests, "position"), 0.1);
 }
 
-/// Catches samples at rest in the test: nothing decays there.
+/// Catches a test that includes samples at rest, where nothing decays.
 TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
   constexpr double kFades_mm = 0.03;
   double turned = 0.0, before = 0.0, last_x = 0.0;
@@ -94,7 +94,7 @@ TEST(ResidualTests, AFrictionThatDriftsIsSlow) {
   EXPECT_LT(tests.constant, 0.2);
 }
 
-/// What the speed channel reads, from the true speed, its acceleration and the travel.
+/// Reading of the speed channel, from the true speed, its acceleration and the travel.
 using Reading = std::function<double(double w, double acceleration, double x_mm)>;
 
 host::ResidualTests tests_of_reading(const Reading& reading) {

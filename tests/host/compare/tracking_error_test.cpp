@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCoggingPeriod_mm = 2.5, kLag_s = 0.004, kDirection_mm = 0.003, kCogging_mm = 0.002;
 
-/// A table that goes to and fro 5 ms late, sticks by 3 µm to where it came from, and waves every 2.5 mm.
+/// A table that moves back and forth 5 ms late, lags by 3 µm after each reversal, and has a ripple every 2.5 mm.
 host::Record sample() {
   host::Record record;
   record.path = "r.csv";

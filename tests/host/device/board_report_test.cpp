@@ -1,4 +1,4 @@
-// What a board says of faults and time, in words and in JSON.
+// A board's faults and running time, in words and in JSON.
 #include "host/device/board_report.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Flashing: the edges and pauses of the sequence, and what becomes of each failure.
+// Flashing: the edges and pauses of the sequence, and the result of each failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr const char* kListing =
     "Found DFU: [0483:df11] ver=2200, alt=0, name=\"@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg\"";
 
-/// A board computer that writes down what is done to it, with the time that pauses have taken.
+/// A board computer that records all actions, with the time of the pauses.
 struct Bench {
   struct Event {
     std::string what;
@@ -142,7 +142,7 @@ TEST(Flash, SaysSoWhereTheChipDoesNotTakeTheLevel) {
   EXPECT_THROW(host::run_flash(with_gpio(), bench.actions()), host::Failure) << "an empty upload";
 }
 
-/// In openocd's script protection is looked at first, the image comes last.
+/// In openocd's script the protection is checked first, and the image is written last.
 TEST(Flash, GivesTheProbeTheSameRule) {
   host::FlashRequest request;
   request.way = host::FlashWay::probe;

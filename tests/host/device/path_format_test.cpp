@@ -37,7 +37,7 @@ class OlderBoard : public host::ReportLink {
   std::deque<hal::HidReport> replies_;
 };
 
-/// Catches a program that takes whatever opens a path for a board that reads its nodes.
+/// Catches a program that assumes that every board that opens a path can read its nodes.
 TEST(PathNodeFormat, ABoardThatReadsNodesAnotherWayIsRefusedByName) {
   host::BoardClient board(std::make_unique<OlderBoard>());
   host::PathScale scale;

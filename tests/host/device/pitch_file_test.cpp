@@ -1,4 +1,4 @@
-// The file of what was measured of a screw: what it says, and what is said of a bad one.
+// The file with the measured errors of a screw: its contents, and messages about a bad one.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A verdict follows from the probabilities beside it.
+// A verdict follows from its probabilities.
 #include "host/diagnose/certainty.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST(Certainty, RivalsThatTogetherHoldItAreAGroup) {
   EXPECT_THAT(modelled_kinds(diagnosis), ElementsAre("constant_torque"));
 }
 
-/// An offset of the command and a weight are one thing to most records; the encoder's error beside them is not.
+/// Most records cannot tell an offset of the command from a weight, but they can tell the encoder's error from both.
 TEST(Certainty, WhatIsCertainStandsBesideAGroup) {
   const Diagnosis diagnosis =
       claimed({"dac_offset", "encoder_cyclic_error"}, {candidate({"dac_offset", "encoder_cyclic_error"}, 0.49),

@@ -42,7 +42,7 @@ TEST(Claim, WhatTakesNearlyAllOfTheErrorOnBothSetsStands) {
 }
 
 TEST(Claim, ACompleteModelLeavesNothingToExplain) {
-  // Lucky on validation, where a few windows are bad; on training there was nothing to begin with.
+  // A gain by chance on validation, where a few windows are bad; in training there was no error to explain.
   EXPECT_EQ(host::reservation_about(candidate(1.24, 0.97, 0.76), diagnosis(0.83, 1.24)), Reservation::no_gain);
   EXPECT_EQ(host::reservation_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Reservation::no_gain);
 }
@@ -55,7 +55,7 @@ TEST(Claim, WhatLowersOneSetOnlyIsNoFinding) {
 TEST(Claim, WhatLeavesAThirdOfTheErrorMakesUpForSomethingElse) {
   EXPECT_EQ(host::reservation_about(candidate(4.0, 2.4, 1.0), diagnosis(4.0, 4.0)), Reservation::leaves_much);
   host::Diagnosis rough = diagnosis(40.0, 40.0);
-  rough.rough = true;  // many small things are missing there
+  rough.rough = true;  // the machine is limited by model error
   EXPECT_EQ(host::reservation_about(candidate(40.0, 20.0, 20.0), rough), Reservation::none);
 }
 
@@ -130,7 +130,7 @@ TEST(Probability, ASmallErrorIsProbablyNothing) {
   EXPECT_NEAR(sum_of_probabilities(complete), 1.0, 1e-12);
 }
 
-/// Whoever is told that the records do not suffice, or that what is left is no noise, is not told that all is well.
+/// If the records do not suffice, or the residual is not noise, the verdict must not be an all-clear.
 TEST(Probability, AnObjectionToTheAllClearIsOneToNothing) {
   host::Diagnosis complete = diagnosis(0.85, 0.95);
   host::assign_probabilities(complete);

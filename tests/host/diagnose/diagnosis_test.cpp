@@ -72,7 +72,7 @@ DriveCase late_with_dead_zone(double width_V) {
   return late;
 }
 
-/// While the axis slides the effort shows the dead time alone.
+/// While the axis slides, the force balance shows only the dead time.
 TEST(Diagnosis, WhatTheEffortLeavesTheMotionTells) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase late = late_with_dead_zone(0.2);
@@ -82,7 +82,7 @@ TEST(Diagnosis, WhatTheEffortLeavesTheMotionTells) {
   EXPECT_LT(diagnosis.after_validate, 1.1);
 }
 
-/// What is often taken for the first of two effects is tried in its place too, beside the second.
+/// Effects that are often confused with the first of two effects are tried in its place, too, beside the second.
 TEST(Diagnosis, BothEffectsOfAPairHaveRivals) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase late = late_with_dead_zone(0.12);
@@ -97,7 +97,7 @@ TEST(Diagnosis, BothEffectsOfAPairHaveRivals) {
 
 TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // What trains moves so that its friction is far off where another motion judges.
+  // The training motion gives a friction that is far off for the validation motion.
   const host::SimulatedNull null = host::simulated_null(3'000'054);
   const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
   const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
@@ -107,7 +107,7 @@ TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
               testing::ContainsRegex("training data do not determine [a-z, ]*(viscous|stribeck)"));
 }
 
-/// The base ends in a local minimum from which an offset that is not there would carry it; a candidate on it runs away.
+/// The base ends in a local minimum which only a nonexistent offset would leave; a candidate built on it diverges.
 TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(55);
@@ -117,8 +117,8 @@ TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   EXPECT_EQ(diagnosis.verdict.status, host::Status::parameters) << diagnosis.verdict.explanation;
 }
 
-/// A breakaway that ran away bent the base so far that half of it was called an effect; without that the training data
-/// leave the base open, and so does the verdict.
+/// A diverged breakaway level distorted the base so far that half of the error was called an effect. Without it the
+/// training data do not determine the base, and the verdict says so.
 TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(2'000'049);
@@ -128,7 +128,7 @@ TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty()) << diagnosis.verdict.explanation;
 }
 
-/// Static friction ran away to all that the motor gives, and no candidate led back.
+/// Static friction diverged to the motor's full torque, and no candidate led back.
 TEST(Diagnosis, StaticFrictionThatRanAwayIsFittedAgainFromWhatWasGiven) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(1'000'040);
@@ -138,7 +138,7 @@ TEST(Diagnosis, StaticFrictionThatRanAwayIsFittedAgainFromWhatWasGiven) {
   EXPECT_LT(diagnosis.base.find("stribeck")->at("static_positive"), 6.0) << "4.4 Nm in the machine";
 }
 
-/// Half of what is left goes with the acceleration there: the smoother's own, and nothing that is missing.
+/// Half of the residual depends on the acceleration there, due to the smoother; no effect is missing.
 TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(3);
@@ -218,7 +218,7 @@ TEST(Diagnosis, AnEffectOutsideTheCatalogueIsUnexplainedAndItsPlaceIsNamed) {
   EXPECT_NEAR(curve(place_mm), 1.0, 0.3);
   EXPECT_NEAR(curve(place_mm - 30.0), 0.0, 0.15);
   EXPECT_NEAR(curve(place_mm + 30.0), 0.0, 0.15);
-  // Programs see what it depends on, too.
+  // The JSON document also contains the coordinate.
   const nlohmann::json residual = host::to_json(diagnosis).at("residual");
   EXPECT_GT(residual.at("dependences").at(0).at("share").get<double>(), 0.1);
   const nlohmann::json& with_itself = residual.at("autocorrelation");

@@ -1,4 +1,4 @@
-// A carriage at constant speed whose encoder errs: the torque shows nothing, the position shows all.
+// A carriage at constant speed with an encoder error, which shows in the position but not in the torque.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The hidden-effect test: records of an independent plant in which something is hidden must lead to exactly that.
+// The hidden-effect test: from records of an independent plant with a hidden effect, the diagnosis must find exactly
+// that effect.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ TEST_P(HiddenEffect, IsFoundAndNothingElse) {
   EXPECT_LT(diagnosis.after_validate, diagnosis.before_validate);
 }
 
-/// A found effect has the size that was hidden, in the unit of the machine, over the coordinate in which it shows.
+/// A found effect has the size of the hidden one, in the unit of the machine, over the coordinate in which it shows.
 TEST(FoundEffect, HasTheSizeThatWasHidden) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kHidden_Nm = 0.156, kPeriod_mm = 1.25;  // cog1 and cog1_per in its truth.json

@@ -1,4 +1,4 @@
-// What an improvement says of itself: figures, file and the next command, in place of what was missing before it.
+// The report of an improvement: figures, file and the next command, instead of the missing effect.
 #include "host/diagnose/improvement_report.hpp"
 
 #include <gmock/gmock.h>
@@ -60,8 +60,8 @@ JudgedCandidate candidate(const std::string& kind, double after) {
   return judged;
 }
 
-// Catches pairs of equal bars for whatever changes nothing, and a rival that stands far from what it cannot be told
-// from.
+// Catches pairs of equal bars for effects that change nothing, and a rival that is not next to the effect from which it
+// cannot be told apart.
 TEST(Candidates, RivalsStandTogetherAndWhatChangesNothingIsFolded) {
   Diagnosis diagnosis;
   diagnosis.before_train = diagnosis.before_validate = 10.0;

@@ -23,7 +23,7 @@ TEST(FitBudget, EndsAFitThatHasUsedItUpAndNoOther) {
   ASSERT_FALSE(free.cut_short);
   ASSERT_GT(free.iterations, 2) << "something to cut";
 
-  // One look at the errors and one at the slopes are under way when the budget is noticed.
+  // When the budget is checked, one evaluation of the errors and one of the slopes are under way.
   const double slopes = static_cast<double>(host::ParameterVector(model, host::Freedom::everything).size()) + 1.0;
   const host::FitResult cut = host::fit_model(model, set, {.most_steps = 2.0 * pass});
   EXPECT_TRUE(cut.cut_short);
@@ -65,7 +65,7 @@ TEST(Fit, LeavesWhatIsHeldAndMovesTheRest) {
   EXPECT_NEAR(conflicts.front().wanted, held / 1.3, 0.03 * held);
 }
 
-// A belief that is not weighed, or weighed like every sample, fails here.
+// Catches a prior that is ignored, or that has the weight of every sample.
 TEST(Fit, WeighsABeliefAgainstTheRecord) {
   const host::Record record = HandMade::record(3.0);
   sim::DriveDescription model = heavier(HandMade::model());

@@ -1,4 +1,4 @@
-// One model and one record have one set of figures, whatever command prints them.
+// One model and one record have one set of figures, in every command.
 #include <gtest/gtest.h>
 
 #include "host/compare/comparison_figures.hpp"
@@ -27,7 +27,7 @@ void expect_same(const json& told, const sim::DriveDescription& model, const std
 
 struct Asked {
   const char* name;
-  bool swapped;  ///< the record that judges trains, and the others judge
+  bool swapped;  ///< the validation record is used for training, and the others for validation
 };
 
 class OneMeasure : public testing::TestWithParam<Asked> {};

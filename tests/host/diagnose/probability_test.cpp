@@ -1,4 +1,4 @@
-// What is said to be how probable, by what candidates leave, on how little luck they need, and on what they leave.
+// Stated probabilities as a function of the candidates' remaining error and of the chance of their gain.
 #include "host/diagnose/probability.hpp"
 
 #include <gtest/gtest.h>

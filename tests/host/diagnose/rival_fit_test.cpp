@@ -22,8 +22,8 @@ DriveCase sweep_of(const std::filesystem::path& folder, double seconds) {
   return sweep;
 }
 
-/// Bent to make up for the weight, the base has no Coulomb friction left (8 s): a start that is a part of it would not
-/// move. And a fit of the weight that ends worse than the base (4 s) is no reason to leave the weight out.
+/// Distorted by the missing weight, the base has no Coulomb friction (8 s), so a start in proportion to that would be
+/// zero. A fit of the weight that ends worse than the base (4 s) is no reason to leave the weight out.
 TEST(RivalFit, AWeightStaysAmongItsRivalsInASweepOfEveryLength) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
@@ -34,7 +34,7 @@ TEST(RivalFit, AWeightStaysAmongItsRivalsInASweepOfEveryLength) {
   }
 }
 
-/// Where rivals are as close over both sets, the one that was a little worse on one of them is not left out.
+/// If rivals are equally good over both sets, one that is slightly worse on one of them is not left out.
 TEST(RivalFit, FrictionThatWarmsUpStaysBesideFrictionAlongTheTravel) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWarm)) GTEST_SKIP() << kWarm << " is absent";
@@ -47,7 +47,7 @@ TEST(RivalFit, AWeightIsNotTakenForASpringFarAway) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
   DriveCase stepped(kWeight.string());
-  // Without the jog nothing moves far, and blocks of both records judge.
+  // Without the jog the travel is short, and blocks of both records are held back for validation.
   std::erase_if(stepped.train, [](const host::Record& record) { return record.path.ends_with("train-jog.csv"); });
   ASSERT_EQ(stepped.train.size(), 2U);
   stepped.validate.clear();

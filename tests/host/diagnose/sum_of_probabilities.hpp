@@ -1,4 +1,4 @@
-// All that a verdict holds possible: 1 together.
+// The sum of all probabilities of a verdict, which must be 1.
 #pragma once
 
 #include "host/diagnose/diagnosis.hpp"

@@ -35,7 +35,7 @@ TEST(Visibility, AWholeCycleShowsADelayAndACurvedFriction) {
 }
 
 TEST(Visibility, AConstantSpeedShowsNeitherDelayNorDifferenceByDirection) {
-  // Forward at 50 rad/s, for 0.9 s: nothing changes that could come late, and there is no backward.
+  // Forward at 50 rad/s, for 0.9 s: nothing changes, so a delay does not show, and there is no backward motion.
   const auto effects = visibility_in(part_of(HandMade::record(5.0), 0.55, 0.9));
   EXPECT_LT(seen(effects, "input_delay"), host::kVisible);
   EXPECT_LT(seen(effects, "viscous_asymmetry"), host::kVisible);

@@ -51,7 +51,7 @@ TEST(CertainEffects, NamesCoggingOfTwoOrders) {
   EXPECT_NEAR(std::abs(cogging.at("sine_12")), 0.005, 0.001);
 }
 
-/// The position alone is wrong; the torque knows nothing of it.
+/// Only the position is wrong; the torque does not contain the error.
 TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kAmplitude = 0.004, kStep = kTurn / 200000.0;
@@ -77,7 +77,7 @@ TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
       host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model), 6);
   ASSERT_THAT(named(found), testing::ElementsAre("encoder_cyclic_error"));
   EXPECT_NEAR(found.best().model.find("encoder_cyclic_error")->at("cosine_3"), kAmplitude, 0.1 * kAmplitude);
-  // A model that holds it has nothing left to explain.
+  // A model with the effect leaves nothing to explain.
   sim::DriveDescription knows = model;
   knows.effects.push_back(*found.best().model.find("encoder_cyclic_error"));
   const host::EffortScreen again =
@@ -96,7 +96,7 @@ TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
 
 TEST(CertainEffects, FindsTwoThatHideEachOther) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // Beside a weight alone, friction that differs by direction wanders with the speed, and the other way round.
+  // Beside a weight alone, friction that differs by direction appears to vary with the speed, and vice versa.
   const host::EffortScreen found =
       screened([](const Point& point) { return 0.006 + 0.3 * kViscous * std::abs(point.w); });
   EXPECT_THAT(named(found), Contains("viscous_asymmetry"));
@@ -124,8 +124,8 @@ TEST(CertainEffects, GivesABumpThatNoEffectIsToTheMemory) {
   EXPECT_GT(found.memory_log_odds, 10.0);
 }
 
-/// A crank: what it takes goes with the acceleration and with the square of the speed, over a turn. Ripple of the
-/// torque takes some of it.
+/// A crank: its torque depends on the acceleration and on the square of the speed, over a turn. Torque ripple explains
+/// a part of it.
 TEST(CertainEffects, HasNoNameForAnInertiaThatVariesOverATurn) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto fast_turning = [](double t_s) {

@@ -40,7 +40,7 @@ std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record
   return host::diagnosis_of(model, sets, screen);
 }
 
-// A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.
+// A search that stops at one order, counts orders over a wrong period or has the wrong sign leaves a larger residual.
 TEST(EffortScreen, FindsFiveOrdersOfCoggingInASlowRecord) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Record train = record_of(slow_turning, five_orders, 0.0, 20.0, 1);
@@ -71,7 +71,7 @@ Point swinging(double t_s) {
           -0.6 * slow * slow * std::sin(slow * t_s) - 0.25 * wave * wave * std::sin(wave * t_s)};
 }
 
-// Less than a turn must do: a weight is neither a spring nor friction under load.
+// Less than a turn must suffice: a weight is neither a spring nor friction under load.
 TEST(EffortScreen, SeesAWeightInPartOfATurn) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto weight = [](const Point& point) { return 0.08 * std::sin(point.x + 0.3); };
@@ -86,7 +86,7 @@ TEST(EffortScreen, SeesAWeightInPartOfATurn) {
   EXPECT_NEAR(std::hypot(cogging.at("cosine"), cogging.at("sine")), 0.08, 0.002);
 }
 
-// What a model has already, in a form that is not linear, must not be looked for again.
+// An effect that the model already has in a nonlinear form must not be searched again.
 TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto dragging = [](const Point& point) {
@@ -105,7 +105,7 @@ TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   EXPECT_LT(left(), 0.5 * without);
 }
 
-// A machine that has warmed up between the records lacks no effect, and its state is told.
+// For a machine that has warmed up between the records, no effect is missing, and the verdict reports its state.
 TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto cold = [](const Point&) { return 0.0; };
@@ -122,7 +122,7 @@ TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
   EXPECT_NEAR(seen->judge_alone->model.find("coulomb")->at("level"), 0.7 * kCoulomb, 0.05 * kCoulomb);
 }
 
-// With an inertia that it makes up, steady speeds would fit anything.
+// With an arbitrary inertia, steady speeds would fit anything.
 TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   const auto at = [](double w) { return [w](double t_s) { return Point{w * t_s, w, 0.0}; }; };
   const auto offset = [](const Point&) { return 0.006; };
@@ -184,8 +184,8 @@ std::pair<double, double> moves(const std::array<double, 6>& places, double t_s)
           way * s * s * (30.0 - 60.0 * s + 30.0 * s * s) / kMove_s};
 }
 
-// Commands above a current limit do nothing. No regression knows that; a second mass or a ripple must not stand for it,
-// since the motion shows it.
+// Commands above a current limit have no effect. The regression has no term for this; a second mass or a ripple must
+// not replace it, since the motion shows it.
 TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   sim::DriveDescription model = motor();
@@ -205,8 +205,8 @@ TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   EXPECT_TRUE(screen.chosen.empty()) << screen.chosen.front().kinds.front();
 }
 
-// The friction of a screw whose preload varies: not once and a half over the travel, so that it never comes back. A
-// period that is a few per cent off leaves a quarter of it.
+// The friction of a screw with varying preload: less than one and a half periods over the travel, so it never repeats.
+// A period that is a few per cent off leaves a quarter of it.
 TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kLength = 30.0;
@@ -290,7 +290,7 @@ TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
               0.005 * Shaken::kAntiresonance_Hz);
 }
 
-// A pitch that nobody knows, seen over a dozen periods.
+// An unknown pitch over a dozen periods.
 TEST(EffortScreen, FindsThePeriodToAThousandth) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kPitch = 2.3;
@@ -307,7 +307,7 @@ TEST(EffortScreen, FindsThePeriodToAThousandth) {
   EXPECT_NEAR(screen.best().model.find("cogging")->at("period"), kPitch, 1e-3 * kPitch);
 }
 
-// What the effort is in proportion to must not be explained by the effort itself.
+// An effect in proportion to the effort must not be explained by the measured effort itself.
 TEST(EffortScreen, ClaimsNothingWhereNothingIsMissing) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto nothing = [](const Point&) { return 0.0; };

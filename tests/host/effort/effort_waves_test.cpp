@@ -1,4 +1,4 @@
-// How probable a period is before anything was measured.
+// Prior probability of a period.
 #include "host/effort/effort_waves.hpp"
 
 #include <gtest/gtest.h>

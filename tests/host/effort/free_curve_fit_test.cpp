@@ -30,7 +30,7 @@ std::vector<const host::Record*> addresses(const std::vector<host::Record>& reco
   return result;
 }
 
-/// A notch that comes back every 0.8 mm: no sine.
+/// A notch that repeats every 0.8 mm: not a sine.
 double notched(const Point& point) {
   const double phase = point.x / 0.8 - std::floor(point.x / 0.8);
   return phase < 0.25 ? 0.03 : 0.0;
@@ -60,7 +60,7 @@ TEST(FreeCurve, FindsNoPhaseInWhatGoesAlongTheTravelOnce) {
   EXPECT_EQ(fit->over, "position");
 }
 
-// A curve over the current that were free beside the inertia would take all of its place.
+// A curve over the current, if fitted together with a free inertia, would absorb the whole inertia.
 TEST(FreeCurve, OverCurrentLeavesTheInertia) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase dead_zone("single/case-09");

@@ -39,7 +39,7 @@ class LogFaults : public testing::Test {
 
 TEST_F(LogFaults, NoneInASoundRecord) { EXPECT_TRUE(host::log_faults(record, model).empty()); }
 
-/// Catches a noise floor of nothing, and a model of another machine, without a word.
+/// Catches a noise floor of zero, and a model of another machine, without a message.
 TEST_F(LogFaults, OfADataSheetAreSaidAndEndNothing) {
   model.data.encoder_resolution = 0.0;
   expect_only(LogFaultKind::no_encoder, "x_mm", 0.002, 1e-9);
@@ -125,7 +125,7 @@ TEST_F(LogFaults, TachometerLateByWholeSamples) {
   expect_only(LogFaultKind::time_shift, "w_rad_s", 0.004, 1e-9);
 }
 
-/// As of a logger that puts channels of two clocks on one.
+/// Like a logger that merges channels of two clocks.
 TEST_F(LogFaults, TachometerLateByPartsOfASample) {
   for (std::size_t k = record.size() - 1; k >= 9; --k) record.w[k] = 0.4 * record.w[k - 8] + 0.6 * record.w[k - 9];
   const auto faults = host::log_faults(record, model);
@@ -135,7 +135,7 @@ TEST_F(LogFaults, TachometerLateByPartsOfASample) {
   EXPECT_FALSE(faults[0].fatal);
 }
 
-/// As of a host that was busy, whose log was interpolated: the axis itself went on.
+/// Like a busy host whose log was interpolated while the axis continued to move.
 TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
   for (std::size_t k = 1001; k < 1007; ++k) record.x[k] = record.x[1000] + 0.01 * static_cast<double>(k - 1000);
   const auto faults = host::log_faults(record, model);
@@ -145,7 +145,7 @@ TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
   EXPECT_FALSE(faults[0].fatal);
 }
 
-/// As of a controller that reads its position every tenth sample.
+/// Like a controller that reads its position every tenth sample.
 TEST_F(LogFaults, APositionThatIsHeldOverSomeRowsIsNoNewZero) {
   record.w.clear();
   for (std::size_t k = 0; k < record.size(); ++k) record.x[k] = record.x[k - k % 10];

@@ -1,4 +1,5 @@
-// Faults put into sound records of an independent plant: in the records that train, in the one that judges, in both.
+// Faults inserted into good records of an independent plant: in the training records, in the validation record, in
+// both.
 #include "host/evidence/measurement_gate.hpp"
 
 #include <gmock/gmock.h>
@@ -67,7 +68,7 @@ void drop_rows(Record& record) {
 
 struct Injection {
   const char* name;
-  const char* family;  ///< what the gate must call it
+  const char* family;  ///< expected name of the fault in the gate
   bool fatal;
   std::function<void(Record&, const sim::DataSheet&)> spoil;
 };
@@ -102,7 +103,7 @@ const Injection kInjections[] = {
     {"late", "time_shift", false, [](Record& r, const auto&) { std::rotate(r.w.begin(), r.w.end() - 4, r.w.end()); }},
 };
 
-/// The command's current, as an ammeter logs it, `late` samples after it has flown.
+/// The command's current, logged `late` samples too late.
 Record with_late_current(Record record, const sim::DataSheet& data, std::size_t late) {
   record.i_A = record.u_V;
   scale(record.i_A, data.amplifier_gain_A_per_V);
@@ -128,7 +129,7 @@ std::vector<std::string> named(const Case& spoilt, bool fatal) {
   return families;
 }
 
-// A logger that filters its current has it late in all its records, and two of them may not tell.
+// A logger that filters its current logs it late in all its records, and two of them may not show it.
 TEST(LateCurrent, IsShiftedBackInAllRecordsOfItsLogger) {
   constexpr std::size_t kLate = 5;
   const Case sound(fs::path(AXIS_TEST_DATA) / "drive-cases" / "none" / "case-00");
@@ -164,7 +165,7 @@ TEST_P(FaultOfALog, IsNamedWhereverItStands) {
     for (Record& record : spoilt.train) injection.spoil(record, spoilt.model.data);
   if (where != Where::training)
     for (Record& record : spoilt.validate) injection.spoil(record, spoilt.model.data);
-  // A clipped record that is seldom near its top shows by being at odds with the others.
+  // A record that is clipped only rarely is found because it disagrees with the others.
   const char* other = std::string_view(injection.family) == "clipped" ? "records_disagree" : injection.family;
   EXPECT_THAT(named(spoilt, injection.fatal), testing::Contains(testing::AnyOf(injection.family, other)));
 }
@@ -234,7 +235,7 @@ TEST_F(Gate, NamesARecordWhoseCommandWasScaledBetweenTheRecords) {
   EXPECT_THAT(named(sound, true), testing::ElementsAre("records_disagree"));
 }
 
-/// Slow enough, a record tells friction alone, and that its poorly known inertia is off by as much is an accident.
+/// A slow record shows only friction; its poorly known inertia may be off by the same factor by chance.
 TEST(SoundRecords, OneThatTellsLittleOfTheInertiaConvictsNobody) {
   const host::SimulatedNull null = host::simulated_null(15);
   ASSERT_EQ(null.train.size(), 3U);

@@ -16,7 +16,7 @@ for shell in "$project"/host/examples/*.sh; do
     echo "$python prints: $other" >&2
     exit 1
   fi
-  # README's table names it with its figure, as far as it is written there, and with its page.
+  # README's table names each example with the first digits of its figure, and with its page.
   row=$(grep "^| $(basename "$shell" .sh) " "$project/host/examples/README.md") || { echo "README.md does not name it" >&2; exit 1; }
   figure=$(sed 's/.*`\([^`]*\)` |$/\1/' <<< "$row")
   [[ $one == "${figure%…}"* ]] || { echo "README.md says: $figure" >&2; exit 1; }

@@ -143,7 +143,7 @@ TEST(Gcode, HasFourKindsOfProbingMoves) {
   }
 }
 
-/// Where a probe met something, the program goes on: absolute positions stay, steps count from there.
+/// After a probe's contact the program continues: absolute positions stay, increments count from the contact.
 TEST(Gcode, GoesOnFromWhereAProbeEnded) {
   host::GcodeMachine machine;
   machine.probed = {host::PathPoint(4.25, 0.0, 0.0)};
@@ -158,7 +158,7 @@ TEST(Gcode, GoesOnFromWhereAProbeEnded) {
   EXPECT_EQ(program.moves[4].curve.begin().x(), 6.25) << "not probed yet: as if nothing were there";
 }
 
-/// What follows a probe that has not run cannot be judged by where it might end.
+/// Moves after a probing move that has not run cannot be checked, because its end is unknown.
 TEST(Gcode, IsNotRefusedForWhereAProbeMightEnd) {
   EXPECT_EQ(refusal("F300 G38.3 X10\nG38.3 X10\n"), "taken");
   host::GcodeMachine machine;

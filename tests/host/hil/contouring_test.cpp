@@ -16,7 +16,7 @@ using host::Path;
 
 constexpr std::uint64_t kSeed = 3;
 
-/// Identified once: the controller knows of the plants what the procedure found, not Table 1.
+/// Identified once: the controller uses the identified values of the plants, not Table 1.
 const std::array<sim::DriveDescription, 2>& identified() {
   static const std::array<sim::DriveDescription, 2> models{host::commission(*host::paper_drive("x"), 1),
                                                            host::commission(*host::paper_drive("y"), 2)};
@@ -57,7 +57,7 @@ TEST(Circle, WithFrictionFeedforwardKeepsToThePath) {
   EXPECT_LE(run.standing_after_um(), kCount_um);
 }
 
-/// Where the friction curve is right, cancellation has nothing to add but the estimate's noise.
+/// If the friction curve is right, cancellation adds only the noise of the estimate.
 TEST(Circle, CancellationOnTopCostsLittleWhereTheModelIsRight) {
   const auto run = circle({.friction = true, .cancellation = true});
   print("with cancellation", run);

@@ -19,7 +19,7 @@ using host::FaultTrial;
 using host::TrialMotion;
 using host::TrialOutcome;
 
-/// How much of what is stated the trials have needed, beyond their ramps.
+/// Largest values of the trials beyond their ramps, compared with the stated bounds.
 struct Worst {
   double extra_s = 0.0, extra_mm = 0.0, gain_s = 0.0;
   std::array<double, 5> extra_mm_by_speed{};  ///< of axes slower than 50, 100, 150, 200 mm/s, and the rest
@@ -48,7 +48,7 @@ struct Worst {
   }
 };
 
-/// Empty where the trial ended as it must.
+/// Empty if the trial ended as required.
 std::string what_is_wrong(const FaultTrial& trial, const TrialOutcome& outcome) {
   std::string wrong;
   if (!outcome.is_safe) wrong += ", not safe";
@@ -80,8 +80,8 @@ host::TrialInjection any_value(Random& random, const host::InjectionInfo& info) 
   return what;
 }
 
-/// Both at once are a sound machine: what the one turns round, the other turns back, and no tachometer tells; or counts
-/// lost and gained.
+/// Both together are undetectable: the second reversal cancels the first and no tachometer shows it; or counts are lost
+/// and gained.
 bool cancel_each_other(const FaultTrial& trial) {
   const bool both_count = trial.first.injection->kind == "counts_lost" && trial.second.injection->kind == "counts_lost";
   if (both_count && trial.first.axis == trial.second.axis && trial.delay == 0 &&
@@ -100,8 +100,8 @@ bool needs(const FaultTrial& trial, Needs what) {
          (trial.second.injection != nullptr && trial.second.injection->needs == what);
 }
 
-/// A dead encoder hides what a stuck converter does until the loop closes, where neither tachometer nor brake helps. A
-/// contact that cannot close hides an amplifier that drives by itself.
+/// Without a tachometer or brake, a dead encoder hides the effect of a stuck converter until the loop closes. A contact
+/// that cannot close hides an amplifier that drives by itself.
 bool is_blind(const FaultTrial& trial) {
   if (trial.second.injection == nullptr || trial.first.axis != trial.second.axis) return false;
   const auto are = [&](std::string_view one, std::string_view other) {
@@ -114,7 +114,7 @@ bool is_blind(const FaultTrial& trial) {
           are("encoder_cut", "amplifier_stuck"));
 }
 
-/// Amplifiers that take a while, with and without the ready contact; brakes; weight that friction does not hold.
+/// Slow amplifiers, with and without the ready contact; brakes; a weight that friction does not hold.
 void set_up_start(FaultTrial& trial, Random& random) {
   trial.start.ready_input = needs(trial, Needs::ready_input) || any_of(random, 0, 2) == 0;
   trial.start.brake = needs(trial, Needs::brake) || any_of(random, 0, 2) == 0;
@@ -122,7 +122,7 @@ void set_up_start(FaultTrial& trial, Random& random) {
     trial.motion = TrialMotion::starting;
     trial.start.brake = false;
   }
-  trial.tachometer = trial.tachometer || trial.start.brake;  // as the board wants it
+  trial.tachometer = trial.tachometer || trial.start.brake;  // as the board requires
   trial.start.ready_ms = any_of(random, 0, 250);
   if (either(random) && trial.motion != TrialMotion::starting) trial.start.ready_ms = 0;
   if (trial.start.ready_input || trial.motion == TrialMotion::starting)
@@ -132,7 +132,7 @@ void set_up_start(FaultTrial& trial, Random& random) {
   if (trial.start.brake && either(random)) trial.weight_Nm = either(random) ? weight_Nm : -weight_Nm;
 }
 
-/// What is the same for one fault and for two.
+/// Common part of the tests with one fault and with two.
 void set_up(FaultTrial& trial, Random& random) {
   trial.motion = static_cast<TrialMotion>(any_of(random, 0, 7));
   set_up_start(trial, random);

@@ -1,5 +1,5 @@
-// The step that the paper could not take: find what spoils the circle in the records of that very circle, compensate
-// it, and run again.
+// A step beyond the paper: finds the cause of the contour error in the records of the circle, compensates it, and runs
+// the circle again.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -10,7 +10,7 @@ namespace {
 using firmware::AxisFault;
 using host::Machine;
 
-/// The paper's drives, designed for as they are; `worn` adds what a drive in service may have.
+/// The paper's drives with designs for them; `worn` adds effects of a drive in service.
 std::array<host::MachineAxis, 2> machine_axes(bool worn) {
   std::array<host::MachineAxis, 2> axes;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr double kLead = 10.0 / (2.0 * std::numbers::pi);
 
-/// What Table 1 says, typed again, as a closed form; and what is believed before jogging, (42).
+/// Values of Table 1, typed again, as a closed form; and the values known before jogging, (42).
 struct JoggedAxis {
   const char* name;
   double B, static_Nm[2], coulomb_Nm[2], omega1[2], omega2[2];  // magnitudes
@@ -41,7 +41,7 @@ double true_friction_Nm(const JoggedAxis& axis, double w) {
   return std::copysign(level, w);
 }
 
-/// What the engineer has before jogging: data sheet, inertia and the least-squares estimate of B.
+/// The model before jogging: data sheet, inertia and the least-squares estimate of B.
 sim::DriveDescription believed(const JoggedAxis& axis) {
   sim::DriveDescription model = *host::paper_drive(axis.name);
   model.effects = {{.kind = "inertia", .parameters = {{"J", axis.J}}, .ci95 = {}, .from = {}},

@@ -81,7 +81,7 @@ TEST(Plausibility, WhoKnowsBetterMayAcceptAnEffect) {
   }
 }
 
-// A friction curve of a weak log had a model written that no command read.
+// From a weak log, friction wrote a model that no command could read.
 TEST(Plausibility, WhatNoReaderTakesIsMovedOntoItsBound) {
   sim::DriveDescription model = with("viscous", "B", -0.01, {-0.02, 0.005});
   EXPECT_THROW((void)host::parse_model(host::format_model(model), "weak.toml"), host::Failure);

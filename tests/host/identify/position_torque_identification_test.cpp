@@ -24,7 +24,7 @@ host::Identification identified(Motion motion, Further further) {
   return host::identify_drive(measured, sheet, host::IdentificationMethod::unbiased_ls);
 }
 
-/// What the next command reads of the model that this one writes.
+/// The model as the next command reads it from this command's file.
 sim::DriveDescription read_again(const host::Identification& found) {
   return host::parse_model(host::format_model(found.model), "model.toml");
 }
@@ -41,7 +41,7 @@ Point lively(double t_s) {
   return sum;
 }
 
-// Without the curve over the travel the weight makes of the inertia what it likes.
+// Without the curve over the travel, the weight makes the inertia arbitrary.
 TEST(PositionTorque, AWeightOnAnArmDoesNotBendTheInertia) {
   const host::Identification found = identified(lively, [](const Point& at) { return 0.12 * std::sin(at.x + 0.3); });
   EXPECT_TRUE(found.beside_travel);

@@ -1,4 +1,4 @@
-// Reading in a process of its own: whatever the reader does, the caller gets its log or a refusal.
+// Reading in a separate process: whatever the reader does, the caller gets its log or a refusal.
 #include "host/import/confined_reader.hpp"
 
 #include <gmock/gmock.h>

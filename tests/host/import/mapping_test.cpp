@@ -1,4 +1,4 @@
-// What may stand behind --map, and what is said when something else does.
+// Valid arguments of --map, and messages about invalid ones.
 #include "host/import/mapping.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// matio is loaded only when it is needed: what happens where it is not there.
+// matio is loaded only when it is needed; messages if it is missing.
 #include "host/import/mat_library.hpp"
 
 #include <gmock/gmock.h>

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A program that has a file open, and does nothing.
+/// A program that only keeps a file open.
 class Holder {
  public:
   explicit Holder(const std::string& file)
@@ -36,7 +36,7 @@ class Holder {
   int process_ = 0;
 };
 
-/// A board that says nothing.
+/// A board that does not answer.
 class SilentLink : public host::ReportLink {
  public:
   explicit SilentLink(std::string file) : file_(std::move(file)) {}

@@ -1,4 +1,4 @@
-// What a log tells of the drive: a motor of known winding behind a voltage, or behind a current amplifier.
+// Properties of the drive from a log: a motor with known winding, driven by a voltage or by a current amplifier.
 #include "host/opening/drive_constants.hpp"
 
 #include <gtest/gtest.h>

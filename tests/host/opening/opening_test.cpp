@@ -241,7 +241,7 @@ TEST_F(Opening, WithoutTimesThePeriodIsMissing) {
   EXPECT_THAT(opening.files[0].understood.missing.front(), HasSubstr("--period"));
 }
 
-/// Six made machines, each by its four logs and nothing else: the encoder's step is exact.
+/// Six simulated machines, each with only its four logs: the encoder's step is exact.
 TEST_F(Opening, ControllerLogs) {
   if (!fs::exists(kShared / "controller-logs")) GTEST_SKIP() << kShared << " is not there";
   for (const char* name : {"worn_screw", "gap_only", "honest_clean", "warm_gear", "vertical_z", "crank"}) {

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// What is said of the paper's x axis after a change; "" where it is accepted.
+/// The refusal of the paper's x axis after a change; "" if it is accepted.
 std::string said_after(std::initializer_list<std::pair<const char*, double>> changes) {
   auto values = firmware_test::paper_values();
   for (const auto& [name, value] : changes) firmware_test::set(values, name, value);
@@ -82,7 +82,7 @@ TEST(SetRefusal, TheCeilingsThatAreSaidAreThoseThatHold) {
   }
 }
 
-/// Catches a weight that sinks unseen: its encoder is dead, and nothing moves by command.
+/// Catches an undetected sinking weight: the encoder is dead, and nothing moves by command.
 TEST(SetRefusal, ABrakeNeedsFeedbackAtRest) {
   const std::string said = said_after({{"x.brake.fitted", 1}, {"x.tachometer.fitted", 0}, {"x.kalman.k12", 0}});
   EXPECT_TRUE(says(said, "x.brake.fitted")) << said;

@@ -1,5 +1,4 @@
-// Planned paths, as the board's follower then moves the axes: within the limits, on the path, and not slower than need
-// be.
+// Planned paths, followed as on the board: within the limits, on the path, and not slower than necessary.
 #include "host/path/path_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -99,7 +98,7 @@ TEST(PlannedPath, ToleranceSavesTimeAtCorners) {
   EXPECT_LT(square(0.1), square(0.01) - 0.03);
 }
 
-/// Where an operator must let the program go on, the axes stand, and what comes afterwards is a node of its own.
+/// At a stop for the operator, the axes stand, and the following motion begins with a separate node.
 TEST(PlannedPath, StopsForTheOperatorWhereTheProgramSaysSo) {
   const auto program =
       host::read_gcode("G64 P1\nG1 F600 X10\nM0\nX20\nM1\nX30\nM2\n", "part.ngc", PathPoint::Zero(), {});
@@ -167,7 +166,7 @@ TEST(PlannedPath, RandomProgramsNeverExceedTheirLimits) {
   RecordProperty("worst_jerk", std::to_string(worst.jerk));
 }
 
-/// Slow axes make days of a metre.
+/// With slow axes, a metre takes days.
 TEST(BoundedPath, IsRefusedBeforeItTakesMemory) {
   host::PathPlanOptions slow;
   slow.limits = {PathPoint::Constant(1e-6), PathPoint::Constant(1.0), PathPoint::Constant(1.0)};

@@ -1,4 +1,4 @@
-// Programs for the paper's axes, axes that go where they are led, and what is to be seen of it.
+// Random programs for the paper's axes, ideal axes that follow them, and measurements of their motion.
 #pragma once
 
 #include <cmath>

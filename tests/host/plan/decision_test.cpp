@@ -14,7 +14,7 @@ host::RecordSet with_a_quarter_of_the_floors(host::RecordSet set) {
   return set;
 }
 
-/// Catches odds that take every rival for the whole truth: where even the best leaves twice the floors, four times the
+/// Catches odds that treat a rival as the whole truth: if even the best leaves twice the noise floors, four times the
 /// chi^2 is no more evidence than before.
 TEST(Decision, DoesNotTakeForEvidenceWhatNoRivalExplains) {
   const PlanTrial trial = public_trial(std::filesystem::path(AXIS_TEST_DATA) / "drive-cases/single/case-06");

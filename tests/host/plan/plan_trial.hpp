@@ -1,4 +1,4 @@
-// One trial of planning: a machine that the tool does not know, a first record of it, and the group that is left.
+// One trial of planning: an unknown machine, its first record, and the group of remaining explanations.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ struct PlanTrial {
   double jogs_s = 0.0;  ///< what the case's fixed jogs take
 };
 
-/// How one pair of the group came out.
+/// Result for one pair of the group.
 struct PairOutcome {
   std::string a, b;
   bool separable = false, by_hand = false;

@@ -56,7 +56,7 @@ TEST(RunPlan, NamesWhatIsWrongWithAFile) {
   EXPECT_THAT(complaint(with("[box]", "bax = 1\n[box]")), HasSubstr("bax"));
 }
 
-/// The window of a piece that begins off the middle is what is left on both sides.
+/// The window of a piece that begins off the middle is the remaining range on both sides.
 TEST(RunPlan, KeepsAPieceWithinTheBoxOfTheWholeRun) {
   host::ExcitationScale scale;
   scale.encoder_resolution = 0.001;
@@ -70,7 +70,7 @@ TEST(RunPlan, KeepsAPieceWithinTheBoxOfTheWholeRun) {
   EXPECT_THROW(host::design_piece(run.pieces[0], run.box, 20.5, scale), host::Failure);
 }
 
-/// What a rival leaves when it bends as far as the training records let it: by hand, one parameter.
+/// Error of a rival refitted as far as the training records allow: by hand, for one parameter.
 TEST(Information, IsWhatIsLeftAfterTheRivalHasBent) {
   const host::Information known{Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::VectorXd::Zero(1), 0.0};
   host::Information seen{Eigen::MatrixXd::Constant(1, 1, 1.0), Eigen::VectorXd::Constant(1, -6.0), 36.0};

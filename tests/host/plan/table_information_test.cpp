@@ -1,4 +1,4 @@
-// What a scale on the table adds to a planned run: a gap and a spring, which the motor hardly tells apart.
+// Benefit of a scale on the table for a planned run: it separates a gap from a spring, which the motor hardly does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class TableInformation : public testing::Test {
     return made;
   }
 
-  /// A small gap with a stiff contact, and a spring that bends as much under the table's friction.
+  /// A small gap with a stiff contact, and a spring with the same deflection under the table's friction.
   const std::vector<host::Rival> rivals_ = {
       rival("backlash", {{"gap", 0.01}, {"load_fraction", 0.2}, {"resonance", 200.0}, {"damping_ratio", 0.1}}),
       rival("compliance", {{"load_fraction", 0.2}, {"resonance", 80.0}, {"damping_ratio", 0.1}})};
@@ -71,7 +71,7 @@ TEST_F(TableInformation, IsEmptyWithoutAScale) {
   EXPECT_EQ(host::information_of_table(rivals_[0].model, set).slope.size(), 0);
 }
 
-/// Catches a plan that rates a run by the motor alone, and odds of a decision that forget the table.
+/// Catches a plan that evaluates a run by the motor alone, and odds of a decision that ignore the table.
 TEST_F(TableInformation, RaisesTheOddsOfAPlanAndOfItsDecision) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   for (const std::size_t truth : {0u, 1u}) {

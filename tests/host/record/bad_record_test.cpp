@@ -1,4 +1,4 @@
-// One test for each fault that a record can have: the message names file, line, column and what mends it.
+// One test for each possible fault of a record: the message names file, line, column and remedy.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::string good_text(int count = 1000) {
 
 class BadRecord : public testing::Test {
  protected:
-  /// What reading `text` from a file fails with; the exit code must be that of a bad input file.
+  /// The message when `text` is read from a file; the exit code must be that of a bad input file.
   std::string message_of(const std::string& text, const std::function<void(host::Record&)>& then = {}) {
     const std::string path = folder.write("measured.csv", text);
     try {

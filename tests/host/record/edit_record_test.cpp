@@ -44,7 +44,7 @@ TEST(CutRecord, KeepsTheRowsBetweenTheTimesAndTheirStamps) {
   EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "both cuts are told";
 }
 
-/// Messages advise to cut a record at what is wrong with it: then that cannot stand in the way.
+/// Messages recommend cutting a record at a fault, so the fault must not prevent the cut.
 TEST(CutRecord, WhatIsCutOffNeedNotBeARecord) {
   std::string text = host::format_record(sample());
   const std::size_t at = text.find("\n0.3,") + 1;

@@ -1,4 +1,4 @@
-// Records as they are read: units, kinds of drive, what is kept, and that writing loses nothing.
+// Reading of records: units, kinds of drive, further columns, and writing without loss.
 #include "host/record/read_record.hpp"
 
 #include <fmt/format.h>

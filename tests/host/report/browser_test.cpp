@@ -18,8 +18,7 @@
 namespace host {
 namespace {
 
-/// Runs after the report's own scripts: looks at the pixels, drags, looks at the ranges, and leaves what it saw in the
-/// page.
+/// Runs after the report's own scripts: checks pixels, drags, checks the ranges, and writes its results into the page.
 constexpr const char* visitor_script = R"(
 <pre id="seen"></pre><script>
 (async function () {
@@ -119,7 +118,7 @@ class Browser : public testing::Test {
     if (!folder_.empty()) std::filesystem::remove_all(folder_);
   }
 
-  /// The page as it stands after `visitor_script`; what the browser logged is in `log_`.
+  /// The page after `visitor_script`; the browser's messages are in `log_`.
   std::string visit(std::string html, const char* script = visitor_script, const char* settings = "") {
     html.replace(html.rfind("</body>"), 7, script);
     std::ofstream(folder_ / "report.html", std::ios::binary) << html;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 
-/// Position of a mass behind a hold; behind a current loop where it has one, and so many samples late.
+/// Position of a mass after a hold, optionally with a current loop and a delay in samples.
 std::complex<double> answer(double f_Hz, double lag_s, int samples_late) {
   constexpr double kGain = 4000.0, kViscous = 5.0;
   Eigen::Matrix4d held = Eigen::Matrix4d::Zero();  // position, speed, current, command
@@ -44,7 +44,7 @@ host::PlantFit fitted(double lag_s, int samples_late) {
   return host::fit_plant(response);
 }
 
-/// A fit that knows a delay alone bends the magnitudes with a resonance that is not there.
+/// A fit with only a delay adjusts the magnitudes by a nonexistent resonance.
 TEST(PhaseThatTurns, IsACurrentLoopWhereTheMagnitudeFallsToo) {
   const host::PlantFit fit = fitted(1.59e-3, 0);
   EXPECT_TRUE(fit.resonances.empty());

@@ -51,7 +51,7 @@ class MeasuredOnABoard : public testing::Test {
   firmware::AxisParameters<float> parameters_;
 };
 
-/// Runs that turn round, stand still or excite the wrong axis leave too little to find the spring by.
+/// Catches runs that reverse, stand still or excite the wrong axis: the spring could not be found.
 TEST_F(MeasuredOnABoard, ASpringIsFoundThatTheDesignDidNotKnow) {
   const host::ResponsePlan plan{.box = {60.0, 100.0, 4.0, 120.0}};
   std::vector<host::Record> records;
@@ -76,7 +76,7 @@ TEST_F(MeasuredOnABoard, ASpringIsFoundThatTheDesignDidNotKnow) {
   EXPECT_EQ(board_.status().axis[0].state, static_cast<std::uint8_t>(firmware::SupervisorState::ready));
 }
 
-/// What is written and read again gives the same margins.
+/// A response that is written and read again gives the same margins.
 TEST_F(MeasuredOnABoard, AResponseSurvivesItsFile) {
   std::vector<host::Record> records;
   host::make_response_runs(
@@ -91,7 +91,8 @@ TEST_F(MeasuredOnABoard, AResponseSurvivesItsFile) {
   EXPECT_NEAR(axis.margins->phase_deg->ci95[0], again.margins->phase_deg->ci95[0], 1e-6);
 }
 
-/// A light axis with a long lead answers far: without regard to what is watched it stops with a following error.
+/// A light axis with a long lead has a large response: if the plan ignores the monitor, the axis stops with a following
+/// error.
 TEST_F(MeasuredOnABoard, TheAnswerStaysWellWithinTheFollowingErrorThatIsWatched) {
   const auto lowest_V = [&](float watched_mm) {
     parameters_.monitors.following_error_floor = watched_mm;

@@ -1,4 +1,4 @@
-// What a sensor on the table shows: motions and differences written down here by their formulas.
+// Results of a sensor on the table, from motions and differences in closed form.
 #include "host/scale/table_study.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kPeriod_s = 2e-3, kLead = 1.5915, kKt = 0.5;
 constexpr int kRows = 8000;
 
-/// What stands between motor and table, mm, by the motor's position, the torque in Nm and the time.
+/// Difference between motor and table, mm, as a function of the motor's position, the torque in Nm and the time.
 using Difference = std::function<double(double x, double torque, double t_s)>;
 
 sim::DriveDescription drive() {
@@ -60,7 +60,7 @@ host::TableStudy study(const Difference& training, const Difference& judging, co
   return host::study_table(drive(), {&kept[0], &kept[1]});
 }
 
-/// The table in a gap of so many mm, from its middle; stays where it is until it is pushed.
+/// The table in a gap of this width, mm, from its middle; it stays where it is until it is pushed.
 Difference gap_of(double gap) {
   return [gap, table = std::optional<double>()](double x, double, double) mutable {
     if (!table) table = x;
@@ -137,7 +137,7 @@ Difference sprung(double gap) {
   };
 }
 
-/// Catches a judge that takes every difference between the directions for a gap.
+/// Catches a study that takes every difference between the directions for a gap.
 TEST(TableStudy, TellsASpringFromAGap) {
   const host::TableStudy found = study(sprung(0.0), sprung(0.0));
   ASSERT_EQ(found.effects.size(), 1U) << host::table_words(found);
@@ -214,7 +214,7 @@ TEST(TableStudy, FindsAGratingThatOnlySlowMotionResolves) {
   EXPECT_NEAR(found.effects[0].sizes[1].value, 0.15, 0.001);
 }
 
-/// Catches a drift that is taken for a pitch error or a gap, and words that say where it is, which no scale can tell.
+/// Catches a drift that is taken for a pitch error or a gap, and a stated place of the drift, which no scale can show.
 TEST(TableStudy, NamesAGrowthAndNotItsPlace) {
   const Difference warming = [first = std::optional<double>()](double, double, double t_s) mutable {
     if (!first) first = t_s;

@@ -1,4 +1,4 @@
-// What does not change the physics must not change the diagnosis, on the record of a drive that another program made.
+// A change that does not concern the physics must not change the diagnosis, on a record simulated by another program.
 #include "host/scoreboard/rewriting.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The page's actions produce the same documents as the commands, whatever happens to the page meanwhile.
+// The page's actions produce the same documents as the commands, even if the page is reloaded or closed meanwhile.
 #include "host/workbench/jobs.hpp"
 
 #include <gmock/gmock.h>

@@ -12,7 +12,7 @@
 #include "host/workbench/server.hpp"
 #include "tests/host/temporary_folder.hpp"
 
-/// While it lives, names are those of a new folder.
+/// During its lifetime, the working directory is a new folder.
 class WorkingFolder {
  public:
   WorkingFolder() { std::filesystem::current_path(folder.path("")); }
@@ -46,7 +46,7 @@ class ServedFolder : public WorkingFolder {
     return client;
   }
 
-  /// What a page of ours asks: the status, and the JSON that came.
+  /// A request of the workbench's page: the status, and the JSON of the reply.
   std::pair<int, nlohmann::json> get(const std::string& path) const { return told(client().Get(path, own)); }
   std::pair<int, nlohmann::json> post_text(const std::string& path, const std::string& body) const {
     return told(client().Post(path, own, body, "application/json"));

@@ -1,4 +1,4 @@
-// Which image the boot code starts, and which one the program takes: damage, refusals, flash that fails.
+// The image that the boot code starts, and the image that the program accepts: damage, refusals, failing flash.
 #include "firmware/app/update/image_update.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Images of programs, whole ones and others, for boards that exist only here.
+// Makes images of programs, complete or not, for boards that exist only in these tests.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace firmware_test {
 
 using Bytes = std::vector<std::byte>;
 
-/// The simulated flash stalls nobody.
+/// Writes at once: the simulated flash stalls nothing else.
 inline constexpr auto kAtOnce = [](auto write) { return write(); };
 
-/// `size` bytes, of which `seed` decides those that no header is in.
+/// An image of `size` bytes; `seed` decides those outside the header.
 inline Bytes made_image(std::string_view version, unsigned seed, std::size_t size = 900,
                         std::string_view board = "simulated") {
   Bytes image(size);
@@ -41,13 +41,13 @@ inline firmware::ImageHeader header_of(const Bytes& image) {
   return header;
 }
 
-/// What a host says of it.
+/// The host's announcement of the image.
 inline firmware::BeginUpdateRequest announcement_of(const Bytes& image) {
   const firmware::ImageHeader header = header_of(image);
   return {header.image_size, header.crc, header.chip_id, header.layout, 0, header.board};
 }
 
-/// Of the image's bytes from `offset` on.
+/// The block of the image that begins at `offset`.
 inline firmware::UpdateBlockRequest block_of(const Bytes& image, std::size_t offset) {
   firmware::UpdateBlockRequest block;
   block.offset = static_cast<std::uint32_t>(offset);

@@ -26,7 +26,7 @@ using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 
-/// As small as an image allows; the program's place is erased in parts, as on the chip.
+/// The smallest flash for an image; the program's place is erased in parts, as on the chip.
 SimulatedFlash blank_flash() { return SimulatedFlash(3, 1024, 4, 4); }
 
 /// A board: its flash of programs, the boot code, and a program that takes updates.
@@ -79,7 +79,7 @@ struct Board {
 
 const Bytes kOld = made_image("1", 1), kNew = made_image("2", 2, 925), kNewer = made_image("3", 3, 700);
 
-/// What a host does with one image: sends it, restarts the board, and confirms where the image runs and is healthy.
+/// A host's update with one image: sends it, restarts the board, and confirms it if the image runs and is healthy.
 void do_update(Board& board, const firmware::BeginUpdateRequest& announced, const Bytes& sent, bool is_healthy) {
   if (board.update(announced, sent) != UpdateResult::ok) return;
   ASSERT_TRUE(board.boot());
@@ -106,9 +106,10 @@ std::vector<Trial> trials() {
           {"never healthy", announcement_of(kNew), kNew, false, kOld}};
 }
 
-/// After a cut the board boots, again and again, into one of the two; the old one where the new one is not confirmed.
+/// After a power cut the board always boots into one of the two images; into the old one unless the new one is
+/// confirmed.
 void check_after_cut(Board& board, const Trial& trial, std::uint32_t seed, const std::string& where) {
-  // The boot code itself is cut, too, at some operation of its own.
+  // Power is also cut during the boot code.
   board.flash.cut_power_after(seed % 300, kTornStates[seed / 300 % 4], seed);
   try {
     board.boot();
@@ -133,7 +134,7 @@ void check_after_cut(Board& board, const Trial& trial, std::uint32_t seed, const
   ASSERT_EQ(board.running, kNewer) << where;
 }
 
-/// What a board has behind it, which runs the old image in the end.
+/// History of a board that finally runs the old image.
 enum class Past { flashed_by_a_probe, updated, flashed_after_updates };
 
 class UpdateCuts : public testing::TestWithParam<Past> {

@@ -1,4 +1,5 @@
-// Updates over the protocol, on the simulated board: what is taken and when, the trial, and what survives both ways.
+// Updates over the protocol, on the simulated board: accepted requests, the trial, and the data that survive an update
+// and a return.
 #include <gtest/gtest.h>
 
 #include "firmware/app/update/boot_choice.hpp"

@@ -9,7 +9,7 @@
 
 namespace firmware::boards {
 
-/// The sectors of the axis board's images, 16 KB behind address 0, by flash's rules.
+/// The sectors of the axis board's images in 16 KB after address 0, with the rules of flash.
 class CodeMemoryFlash {
  public:
   static constexpr std::uintptr_t kFirstAddress = 0x4000;
