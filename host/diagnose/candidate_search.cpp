@@ -363,6 +363,14 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
       if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
         starts_of[k].push_back({infos[k], std::move(start)});
+    // A load that shares the friction with the motor follows it in another way than one that has it all.
+    if (const sim::ParameterInfo* shared = infos[k]->parameter("load_friction"))
+      for (std::size_t n = starts_of[k].size(); n-- > 0;) {
+        Start split = starts_of[k][n];
+        split.model.effects.back().parameters[std::string(shared->id)] = shared->starts.front();
+        split.effect = split.model.effects.back();
+        starts_of[k].push_back(std::move(split));
+      }
     if (!infos[k]->periodic && starts_of[k].size() > kMostStarts) scan(starts_of[k], model, medium);
   });
   std::vector<Start> starts;

@@ -131,12 +131,6 @@ std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const si
   }
   std::vector<sim::EffectEntry> entries;
   for (const std::vector<double>& row : rows) entries.push_back(entry_from(info, parameters, row));
-  // A load without friction of its own follows the motor in another way than one that has it all.
-  if (const sim::ParameterInfo* shared = info.parameter("load_friction"))
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      entries.push_back(entries[k]);
-      entries.back().parameters[std::string(shared->id)] = shared->starts.front();
-    }
   return entries;
 }
 
