@@ -63,8 +63,12 @@ Message BoardClient::request(MessageType type) {
 
 Message BoardClient::exchange(Message message, milliseconds patience) {
   const Message reply = reply_to(message, patience);
-  require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
+  require_accepted(reply);
   return reply;
+}
+
+void BoardClient::require_accepted(const Message& reply) const {
+  require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
 }
 
 Message BoardClient::reply_to(Message message, milliseconds patience) {
@@ -236,7 +240,7 @@ bool BoardClient::enable_at_rest(std::uint8_t axes) {
   message.put(firmware::AxesRequest{axes});
   const Message reply = reply_to(message, patience_);
   if (reply.status == Status::not_standing) return false;
-  require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
+  require_accepted(reply);
   return true;
 }
 void BoardClient::disable(std::uint8_t axes) { request(MessageType::disable, firmware::AxesRequest{axes}); }
@@ -294,7 +298,7 @@ bool BoardClient::path_nodes(std::span<const std::byte> nodes, firmware::PathSta
   std::ranges::copy(nodes, message.payload.begin());
   message.length = static_cast<std::uint8_t>(nodes.size());
   const Message reply = reply_to(message, patience_);
-  if (reply.status != Status::no_room) require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
+  if (reply.status != Status::no_room) require_accepted(reply);
   state = payload_of<firmware::PathStatePayload>(reply);
   return reply.status == Status::ok;
 }

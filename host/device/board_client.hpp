@@ -130,6 +130,8 @@ class BoardClient {
   firmware::Message request(firmware::MessageType type);
   /// The reply, whatever its status.
   firmware::Message reply_to(firmware::Message message, std::chrono::milliseconds patience);
+  /// Throws Failure where the board refuses; names the programs that have the motion.
+  void require_accepted(const firmware::Message& reply) const;
   std::optional<firmware::Message> receive(std::chrono::steady_clock::time_point deadline);
   void keep_samples(const firmware::Message& message);
 

@@ -36,7 +36,7 @@ struct TriggeredSettings {
 Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& settings, const std::function<bool()>& stop);
 
 /// The board's last capture of an axis, also from before a reset. `settings` becomes what it was taken with. Throws
-/// Failure(refused) when there is none.
+/// Failure(refused) without one.
 Capture read_triggered_capture(BoardClient& board, TriggeredSettings& settings);
 
 }  // namespace host

@@ -87,11 +87,11 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
 bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
   constexpr double kBetter = 0.98;
   constexpr std::size_t kTried = 3;
+  const double before = Errors(sets.base, sets).training;
   for (const Candidate& single : std::span(singles).first(std::min(kTried, singles.size()))) {
     const sim::DriveDescription base = without_or_handed(single, single.kinds.back(), sets);
     const double here = Errors(base, sets).training;
-    if (here > kBetter * Errors(sets.base, sets).training || here > kAsGood * Errors(single.model, sets).training)
-      continue;
+    if (here > kBetter * before || here > kAsGood * Errors(single.model, sets).training) continue;
     sets.base = base;
     return true;
   }
@@ -182,22 +182,20 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   Findings found;
   std::vector<std::string> excluded = sets.absent;
   effort.absent = &excluded;
-  const auto on_top_of = [&](const Candidate& first, double from, double to) {
-    std::vector<Candidate> further = search_candidates(first.model, first.kinds, sets.training, sets.validation,
-                                                       part_of(progress, from, to), effort);
-    split_friction(further, sets);
-    close_unseen_gaps(further, sets);
-    return further;
+  const auto search = [&](const sim::DriveDescription& model, const std::vector<std::string>& kinds, double from,
+                          double to) {
+    std::vector<Candidate> candidates =
+        search_candidates(model, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
+    split_friction(candidates, sets);
+    close_unseen_gaps(candidates, sets);
+    return candidates;
   };
   const auto renew = [&sets](const sim::DriveDescription& model) {
     renew_floors(sets.training, model);
     renew_floors(sets.validation, model);
   };
   const auto search_singles = [&](double from, double to) {
-    found.singles =
-        search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, from, to), effort);
-    split_friction(found.singles, sets);
-    close_unseen_gaps(found.singles, sets);
+    found.singles = search(sets.base, {}, from, to);
     if (!found.singles.empty()) renew(found.singles.front().model);
   };
   search_singles(0.0, 0.4);
@@ -207,7 +205,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
   const auto single = std::ranges::find_if(found.singles, is_physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
-  found.pairs = on_top_of(*single, 0.5, 0.8);
+  found.pairs = search(single->model, single->kinds, 0.5, 0.8);
   // Uses the whole error, because single impacts and breakaways, which the ranking of candidates weights less,
   // determine the remaining error.
   const auto cost = [&](const Candidate& candidate) {
@@ -235,7 +233,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     }
   }
   if (!promises_a_third(Errors(sets.base, sets), Errors(best_pair.model, sets))) return found;
-  found.triples = on_top_of(best_pair, 0.8, 1.0);
+  found.triples = search(best_pair.model, best_pair.kinds, 0.8, 1.0);
   const auto triple = std::ranges::find_if(found.triples, is_physical);
   if (triple == found.triples.end()) return found;
   for (Candidate& shorter : without_what_is_needless(*triple, sets)) found.triples.push_back(std::move(shorter));

@@ -57,7 +57,7 @@ std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKin
 std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel);
 
 /// Fault of a set of column names: a duplicate, two for the same quantity or of different kinds of drive, or a required
-/// one missing. Empty if there is none.
+/// one missing. Empty if nothing is found.
 std::string fault_of_columns(std::span<const std::string_view> names);
 
 /// Numbers under one of the format's column names, in the unit of that name.

@@ -5,8 +5,8 @@
 
 namespace host {
 
-/// The step of which all changes of a position are multiples, in the position's unit; 0 if there is none. If the axis
-/// mostly moves by hundreds of steps per row, it is the last digit of the text.
+/// The step of which all changes of a position are multiples, in the position's unit; 0 without a common step. If the
+/// axis mostly moves by hundreds of steps per row, it is the last digit of the text.
 double position_grid(const std::vector<double>& position);
 
 /// If the positions' own step exceeds that of the data sheet by this factor, they have passed through a coarser
