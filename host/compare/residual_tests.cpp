@@ -13,6 +13,7 @@
 
 #include "host/evidence/period_search.hpp"
 #include "host/fourier.hpp"
+#include "host/known_by_current.hpp"
 #include "host/report/text_format.hpp"
 #include "host/statistics.hpp"
 
@@ -359,7 +360,9 @@ ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& 
   against("travel_since_reversal", &ResidualEffort::since_reversal, 24, in_mm, "where the travel since a reversal is",
           "mm");
   against("acceleration", &ResidualEffort::acceleration, 24, 1.0, "at accelerations", rotary ? "rad/s²" : "m/s²");
-  against("current", &ResidualEffort::command_V, 24, 1.0, "at commands", "V");
+  const bool by_current = is_known_by_current(data);  // then a volt stands for an ampere
+  against("current", &ResidualEffort::command_V, 24, 1.0, by_current ? "at currents" : "at commands",
+          by_current ? "A" : "V");
   against("rest", &ResidualEffort::rest_s, 12, 1.0, "after a rest", "s");
   against("temperature", &ResidualEffort::temp_C, 12, 1.0, "at temperatures", "°C");
   tests.dependences.push_back(

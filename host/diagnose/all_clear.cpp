@@ -17,12 +17,6 @@ namespace host {
 
 namespace {
 
-/// Largest share of the squared residual that may depend on a coordinate. Simulated cases without an effect stay below
-/// 0.05.
-constexpr double kMostDependence = 0.1;
-/// The same for the acceleration, whose changes the smoother rounds: up to 0.61 in a hundred such drives.
-constexpr double kMostOnAcceleration = 0.7;
-
 /// Windows in which the axis moves without reversal.
 double error_while_sliding(const sim::DriveDescription& model, const RecordSet& set) {
   const SetError error = error_of(sim::Drive(model), set);
@@ -76,21 +70,6 @@ Objection base_is_open(const Diagnosis& diagnosis, const sim::DriveDescription& 
               : "Train on motions with the same range of speed and acceleration as the validation motions."};
 }
 
-/// The coordinate that the residual depends on; null if there is none.
-const ResidualDependence* dependence_in(const ResidualTests& tests) {
-  const auto depends = std::ranges::find_if(tests.dependences, [](const ResidualDependence& dependence) {
-    return dependence.share > (dependence.coordinate == "acceleration" ? kMostOnAcceleration : kMostDependence);
-  });
-  return depends == tests.dependences.end() ? nullptr : &*depends;
-}
-
-/// Whether that dependence disappears with the base fitted to both sets. One on acceleration does if the training data
-/// hold few accelerations.
-bool depends_on_base_alone(const Diagnosis& diagnosis) {
-  const std::optional<sim::DriveDescription> base = base_of_both(diagnosis);
-  return base && dependence_in(test_residuals(*base, diagnosis.training, diagnosis.validation)) == nullptr;
-}
-
 /// Effects that no motion can separate from this base: a constant torque from Coulomb levels by direction, an offset of
 /// the tachometer from its noise, and effects of static friction if the base has none.
 bool is_taken_up(const std::string& kind, const sim::DriveDescription& base) {
@@ -126,7 +105,7 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
   // 99 of 100 simulated cases without an effect stay below this.
   constexpr double kLeast = 0.02;
   // The smoother alone leaves this much over acceleration, so acceleration is named only if nothing else shows.
-  constexpr double kLeastOnAcceleration = 0.05;
+  constexpr double kLeastOnAcceleration = 0.05, kMostOnAcceleration = 0.7;
   // A residual that depends on motion is also correlated in time, and differs between parts of the record if the
   // motions do.
   constexpr double kLasting = 0.15, kSlow = 0.8;
@@ -170,7 +149,7 @@ std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis) {
   return {};
 }
 
-std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests) {
+std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis) {
   for (const auto& [set, name, error] : {std::tuple(&diagnosis.training, "training", diagnosis.before_train),
                                          std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate)}) {
     if (is_small(diagnosis.base, *set)) continue;
@@ -190,14 +169,6 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, cons
                     told),
         "Find the motion with the largest error and record only that, slowly and fast, in both directions."};
   }
-  const ResidualDependence* depends = dependence_in(tests);
-  if (depends != nullptr && !depends_on_base_alone(diagnosis))
-    return Objection{
-        Status::unexplained,
-        fmt::format("The error is small ({:.2f} times the noise floor), but the residual is not noise: {:.0f} % of it "
-                    "depends on {}",
-                    diagnosis.told(diagnosis.before_validate), 100.0 * depends->share, depends->coordinate),
-        "Find the motion with the largest error and record only that, slowly and fast, in both directions."};
   std::vector<std::string> hidden, ways;
   for (const Visibility& effect : visibility_of_effects(diagnosis.base, diagnosis.training, diagnosis.validation)) {
     if (effect.floors >= kVisible || is_taken_up(effect.kind, diagnosis.base)) continue;

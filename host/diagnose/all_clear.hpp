@@ -1,5 +1,5 @@
-// Decides whether a model that no known effect improves is complete: the residual must be small and independent of all
-// coordinates, and the records must be able to show each effect that was not found.
+// Decides whether a model that no known effect improves is complete: the residual must be no more than noise,
+// and the records must be able to show each effect that was not found.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct Objection {
 std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis);
 
 /// The objection to calling the refitted base complete, if any.
-std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests);
+std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis);
 
 /// Whether the base fails to predict the speed channel but predicts the position.
 bool speed_channel_alone_fails(const Diagnosis& diagnosis);

@@ -363,15 +363,19 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
       if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
         starts_of[k].push_back({infos[k], std::move(start)});
-    // A load that shares the friction with the motor follows it in another way than one that has it all.
-    if (const sim::ParameterInfo* shared = infos[k]->parameter("load_friction"))
-      for (std::size_t n = starts_of[k].size(); n-- > 0;) {
-        Start split = starts_of[k][n];
-        split.model.effects.back().parameters[std::string(shared->id)] = shared->starts.front();
-        split.effect = split.model.effects.back();
-        starts_of[k].push_back(std::move(split));
+    const bool is_scanned = !infos[k]->periodic && starts_of[k].size() > kMostStarts;
+    // A load that shares the friction with the motor follows it in another way than one that has it all: neither way
+    // may push the other out of the scan.
+    std::vector<Start> shared;
+    if (const sim::ParameterInfo* friction = infos[k]->parameter("load_friction"))
+      for (const Start& all_on_load : starts_of[k]) {
+        shared.push_back(all_on_load);
+        shared.back().model.effects.back().parameters[std::string(friction->id)] = friction->starts.front();
+        shared.back().effect = shared.back().model.effects.back();
       }
-    if (!infos[k]->periodic && starts_of[k].size() > kMostStarts) scan(starts_of[k], model, medium);
+    for (std::vector<Start>* way : {&starts_of[k], &shared})
+      if (is_scanned && !way->empty()) scan(*way, model, medium);
+    std::ranges::move(shared, std::back_inserter(starts_of[k]));
   });
   std::vector<Start> starts;
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));

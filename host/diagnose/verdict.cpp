@@ -10,6 +10,7 @@
 #include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/evidence/speed_coverage.hpp"
+#include "host/known_by_current.hpp"
 #include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
 
@@ -195,10 +196,10 @@ DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const Pre
   DiagnosisVerdict verdict;
   verdict.status = Status::insufficient_data;
   verdict.next_experiment = fmt::format(
-      "Record {:.1f} s more of motion{}: command steps in both directions well above static friction (up to {:g} V), "
-      "and jogs at several speeds in both directions.",
+      "Record {:.1f} s more of motion{}: steps in both directions well above static friction{}, and jogs at several "
+      "speeds in both directions.",
       std::max(0.1, missing_motion_s(sets)), sets.held_back ? ", or a record of another motion for --validate" : "",
-      0.5 * model.data.dac_limit_V);
+      is_known_by_current(model.data) ? std::string() : fmt::format(" (up to {:g} V)", 0.5 * model.data.dac_limit_V));
   verdict.explanation = fmt::format(
       "The axis moved for {:.2f} s in the training data and for {:.2f} s in {}: {} and {} independent windows. At "
       "least {} and {} are needed to separate inertia, friction and other effects.",
@@ -285,12 +286,12 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         diagnosis.tried, std::max(2.0 * validation_s(diagnosis), least_validation_s(diagnosis.tried)));
     return verdict;
   }
-  const ResidualTests tests = test_residuals(diagnosis.base, diagnosis.training, diagnosis.validation);
-  if (const std::optional<Objection> objection = objection_to_all_clear(diagnosis, tests)) {
+  if (const std::optional<Objection> objection = objection_to_all_clear(diagnosis)) {
     verdict.status = objection->status;
     verdict.explanation = objection->explanation + closest + ".";
     if (objection->status == Status::unexplained) {
-      const Trace trace = strongest_trace(diagnosis, tests);
+      const Trace trace =
+          strongest_trace(diagnosis, test_residuals(diagnosis.base, diagnosis.training, diagnosis.validation));
       verdict.coordinate = trace.coordinate;
       verdict.where = trace.where;
       verdict.explanation += fmt::format(" The residual depends most on {}: {}. By motion, {}.",
