@@ -1,5 +1,5 @@
-// Decides whether a model that no known effect improves is complete: the residual must be no more than noise,
-// and the records must be able to show each effect that was not found.
+// Decides whether a model that no known effect improves is complete: the residual must be no more than
+// noise, and the records must be able to show each effect that was not found.
 #pragma once
 
 #include <optional>
