@@ -27,6 +27,7 @@ enum class Scale {
   millimetre,          ///< 1 mm; 0.001 m for a linear drive
   top_speed,           ///< the highest speed of the records
   travel,              ///< the travel that the records cover
+  position,            ///< the same, from the middle of that travel
   duration,            ///< the length of the longest record, s
   first_stamp,         ///< the earliest time stamp of the records, s; never fitted
 };

@@ -59,6 +59,7 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
     case sim::Scale::top_speed:
       return scales.top_speed;
     case sim::Scale::travel:
+    case sim::Scale::position:
       return scales.travel;
     case sim::Scale::duration:
       return scales.duration_s;
@@ -124,7 +125,8 @@ std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const si
       }
       for (const double start : parameters[k]->starts) {
         longer.push_back(row);
-        longer.back().push_back(start * scale_value(parameters[k]->scale, model, scales));
+        longer.back().push_back(start * scale_value(parameters[k]->scale, model, scales) +
+                                (parameters[k]->scale == sim::Scale::position ? scales.middle : 0.0));
       }
     }
     rows = std::move(longer);
@@ -244,6 +246,7 @@ RecordScales scales_of(const RecordSet& set) {
     scales.duration_s = std::max(scales.duration_s, t_s.back() - t_s.front());
   }
   scales.travel = high - low;
+  scales.middle = 0.5 * (high + low);
   scales.first_stamp_s = first_stamp_s(set);
   return scales;
 }

@@ -11,6 +11,7 @@ namespace host {
 /// Sizes that the catalogue's starting values are given in.
 struct RecordScales {
   double travel = 0.0;      ///< mm or m that the records cover
+  double middle = 0.0;      ///< of that travel, mm or m
   double top_speed = 0.0;   ///< rad/s or m/s
   double duration_s = 0.0;  ///< of the longest record
   double first_stamp_s = 0.0;

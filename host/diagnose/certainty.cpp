@@ -18,10 +18,12 @@ using Kinds = std::vector<std::string>;
 
 bool holds(const Kinds& all, const std::string& kind) { return std::ranges::find(all, kind) != all.end(); }
 
-double probability_of_any(const Diagnosis& diagnosis, const Kinds& group) {
+/// Probability of `certain` together with at least one of a group.
+double probability_of_any(const Diagnosis& diagnosis, const Kinds& group, const Kinds& certain = {}) {
   double sum = 0.0;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (std::ranges::any_of(group, [&](const std::string& kind) { return holds(candidate.kinds, kind); }))
+    if (holds_all(candidate.kinds, certain) &&
+        std::ranges::any_of(group, [&](const std::string& kind) { return holds(candidate.kinds, kind); }))
       sum += candidate.probability;
   return sum;
 }
@@ -39,19 +41,24 @@ double taken_by(const JudgedCandidate& candidate) {
   return 1.0 - left * left;
 }
 
-/// The smallest set of most probable single effects that together reach kNamed; empty if there are too many to test, or
-/// if one of them hardly helps.
-Kinds tied_group(const Diagnosis& diagnosis) {
-  std::vector<const JudgedCandidate*> singles;
+/// The smallest set of most probable effects of which one stands beside `certain` with kClaimed. Of more than two,
+/// those that are denied by themselves are left out. Empty if the rest are too many to test, or if one of them hardly
+/// helps.
+Kinds rivals_beside(const Kinds& certain, const Diagnosis& diagnosis) {
+  std::vector<const JudgedCandidate*> further;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (candidate.kinds.size() == 1) singles.push_back(&candidate);
-  std::ranges::stable_sort(singles, std::greater(), &JudgedCandidate::probability);
-  if (singles.size() > kLargestGroup) singles.resize(kLargestGroup);
+    if (candidate.kinds.size() == certain.size() + 1 && holds_all(candidate.kinds, certain))
+      further.push_back(&candidate);
+  std::ranges::stable_sort(further, std::greater(), &JudgedCandidate::probability);
   Kinds group;
-  for (const JudgedCandidate* candidate : singles) {
+  for (const JudgedCandidate* candidate : further) {
     if (taken_by(*candidate) < kWorthNaming) break;
-    group.push_back(candidate->kinds.front());
-    if (probability_of_any(diagnosis, group) >= kNamed) return group.size() > 1 ? group : Kinds{};
+    group.push_back(
+        *std::ranges::find_if(candidate->kinds, [&](const std::string& kind) { return !holds(certain, kind); }));
+    if (probability_of_any(diagnosis, group, certain) < kClaimed) continue;
+    while (group.size() > 2 && probability_of_any(diagnosis, {group.back()}, certain) <= 1.0 - kClaimed)
+      group.pop_back();
+    return group.size() > 1 && group.size() <= kLargestGroup ? group : Kinds{};
   }
   return {};
 }
@@ -62,7 +69,7 @@ void leave_unexplained(Diagnosis& diagnosis) {
   verdict.explanation += fmt::format(
       " This is not claimed: {} has a probability of {:.0f} %, an effect outside the candidates {:.0f} %; a claim "
       "needs {:.0f} %.",
-      fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kNamed);
+      fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kClaimed);
   verdict.status = Status::unexplained;
   verdict.effects.clear();
   verdict.alternatives.clear();
@@ -133,7 +140,7 @@ void settle_status(Diagnosis& diagnosis) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const bool named = verdict.status == Status::missing || verdict.status == Status::ambiguous;
   if (!named || diagnosis.candidates.empty()) return;
-  if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kNamed) return;
+  if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kClaimed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
   const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
   // All named effects are certain together; the other effects of the best candidate are at most a group of rivals.
@@ -141,16 +148,22 @@ void settle_status(Diagnosis& diagnosis) {
   if (verdict.status == Status::missing && !hardly_helps)
     for (const std::string& kind : verdict.effects) {
       together.push_back(kind);
-      if (probability_of(diagnosis, together) < kNamed) together.pop_back();
+      if (probability_of(diagnosis, together) < kClaimed) together.pop_back();
     }
   if (!together.empty()) {
+    const bool lost_some = together.size() < verdict.effects.size();
     verdict.effects = std::move(together);
     std::erase_if(verdict.alternatives, [&](const Kinds& group) {
       return group.size() > kLargestGroup && !holds(verdict.effects, group.front());
     });
+    if (Kinds group = lost_some ? rivals_beside(verdict.effects, diagnosis) : Kinds{};
+        !group.empty() && std::ranges::none_of(verdict.alternatives, [&](const Kinds& other) {
+          return std::ranges::any_of(group, [&](const std::string& kind) { return holds(other, kind); });
+        }))
+      verdict.alternatives.push_back(std::move(group));
     return;
   }
-  Kinds group = tied_group(diagnosis);
+  Kinds group = rivals_beside({}, diagnosis);
   if (group.empty())
     leave_unexplained(diagnosis);
   else

@@ -9,9 +9,6 @@
 
 namespace host {
 
-/// The verdict keeps a name that is more probable than all else together. The probabilities are not calibrated between
-/// this and kClaimed: for some real machines the right answer has 60 %.
-inline constexpr double kNamed = 0.5;
 /// Largest group of rivals: one further measurement can separate this many.
 inline constexpr std::size_t kLargestGroup = 4;
 /// Whether a list of kinds contains all of these.
@@ -19,9 +16,9 @@ bool holds_all(const std::vector<std::string>& all, const std::vector<std::strin
 /// Probability of all these effects together: the sum over all candidates that contain them.
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
 
-/// Withdraws names whose probability is too low. Effects stay named if the probability of the first of them reaches
-/// kNamed. Otherwise a group whose members exceed kWorthNaming and together reach kNamed is named as ambiguous;
-/// otherwise the verdict is unexplained.
+/// Withdraws names whose probability is too low. Effects stay named while they hold kClaimed together; of the others,
+/// rivals that hold it beside them are a group. Where no name is left, a group whose members exceed kWorthNaming and of
+/// which one is present with kClaimed is named as ambiguous; otherwise the verdict is unexplained.
 void settle_status(Diagnosis& diagnosis);
 
 /// Effects of the verdict's model: the named ones, and the first of each group of which one is certain. For an

@@ -63,7 +63,7 @@ std::size_t parameters_of(const JudgedCandidate& candidate) {
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
   constexpr double kNear = 1e-3;
-  constexpr double kStandsForZero = 0.005;  // of the upper end
+  constexpr double kStandsForZero = 0.0005;  // of the upper end; a damping of 0.001 is none, which no drive has
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
@@ -78,6 +78,22 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
           });
       if (on_one) found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
     }
+  }
+  return found;
+}
+
+std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
+                                                 const std::vector<std::string>& kinds, const RecordScales& scales) {
+  constexpr double kFarthest = 10.0;  // travels: over one travel the effect changes by a tenth, as kWorthNaming asks
+  std::vector<std::string> found;
+  for (const std::string& kind : kinds) {
+    const sim::EffectEntry* entry = model.find(kind);
+    if (entry == nullptr) continue;
+    for (const auto& [id, value] : entry->parameters)
+      if (const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
+          info != nullptr && info->scale == sim::Scale::position &&
+          std::abs(value - scales.middle) > kFarthest * scales.travel)
+        found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
   }
   return found;
 }

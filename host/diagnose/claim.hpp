@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/diagnosis.hpp"
 
 namespace host {
@@ -44,6 +45,10 @@ Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis&
 /// Parameters of the effects in `kinds` that are at a bound of their range, "compliance: damping_ratio". A bound at
 /// zero means that this part of the effect is absent, which is allowed.
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
+
+/// Positions so far from the records' travel that the effect hardly changes over it and stands in for a constant.
+std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
+                                                 const std::vector<std::string>& kinds, const RecordScales& scales);
 
 /// Seconds of validation data for which an improvement in all windows is significant for the best of `tried`
 /// candidates.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "host/compare/chance.hpp"
 #include "host/diagnose/certainty.hpp"
@@ -39,6 +40,8 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
       probability_of_luck(before, after, tried, windows_in(kLuckBlock_s, validation), validation.common_square);
   judged.model = candidate.model;
   judged.on_bound = parameters_on_bound(candidate.model, candidate.kinds);
+  std::ranges::move(parameters_out_of_reach(candidate.model, candidate.kinds, scales_of(training)),
+                    std::back_inserter(judged.on_bound));
   return judged;
 }
 

@@ -150,23 +150,29 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
 }
 
-/// Replaces gaps that the encoder does not show by the spring behind them, unless a spring is no candidate. Of two
-/// candidates with the same effects, the better remains.
-void close_unseen_gaps(std::vector<Candidate>& candidates, const PreparedSets& sets) {
+/// A spring is a gap of width zero, so every gap is compared with the spring behind it, fitted as finely. The spring
+/// takes its place if the encoder does not show the gap, or if it predicts the held-back records at least as well;
+/// unless a spring is no candidate. Of two candidates with the same effects, the better remains.
+void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets& sets) {
   if (std::ranges::find(sets.absent, "compliance") != sets.absent.end()) return;
-  bool closed = false;
-  for (Candidate& candidate : candidates) {
+  std::vector<Candidate> springs;
+  std::erase_if(candidates, [&](const Candidate& candidate) {
     sim::DriveDescription model = candidate.model;
     sim::EffectEntry* gap = model.find("backlash");
-    if (gap == nullptr || gap->at("gap") >= least_gap(model.data)) continue;
+    if (gap == nullptr) return false;
+    const bool is_unseen = gap->at("gap") < least_gap(model.data);
     gap->kind = "compliance";
     gap->parameters.erase("gap");
-    std::ranges::replace(candidate.kinds, "backlash", "compliance");
-    candidate = judged(candidate.kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training,
-                       sets.validation);
-    closed = true;
-  }
-  if (!closed) return;
+    // A gap that closes hard is a contact with much damping, which no spring of a drive has.
+    gap->parameters["damping_ratio"] = sim::find_effect("compliance")->parameter("damping_ratio")->starts.front();
+    std::vector<std::string> kinds = candidate.kinds;
+    std::ranges::replace(kinds, "backlash", "compliance");
+    springs.push_back(
+        judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training, sets.validation));
+    return is_unseen || springs.back().validation.robust <= candidate.validation.robust;
+  });
+  if (springs.empty()) return;
+  std::ranges::move(springs, std::back_inserter(candidates));
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
   std::vector<Candidate> best;
   for (Candidate& candidate : candidates)
@@ -187,7 +193,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     std::vector<Candidate> candidates =
         search_candidates(model, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
     split_friction(candidates, sets);
-    close_unseen_gaps(candidates, sets);
+    compare_with_springs(candidates, sets);
     return candidates;
   };
   const auto renew = [&sets](const sim::DriveDescription& model) {
@@ -217,7 +223,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   renew(pair->model);
   Candidate best_pair = *pair;
   std::vector<Candidate> exchanged = with_first_exchanged(best_pair, found.singles, sets);
-  close_unseen_gaps(exchanged, sets);
+  compare_with_springs(exchanged, sets);
   for (const Candidate& other : exchanged)
     if (cost(other) < cost(best_pair)) best_pair = other;
   std::ranges::move(exchanged, std::back_inserter(found.pairs));

@@ -27,6 +27,12 @@ bool is_denied(const TableStudy& study, std::string_view kind) {
   return probability && *probability <= 1.0 - kClaimed && !in_a_group(study, kind);
 }
 
+/// Whether the table shows that a connection is not there, or that it is too small to be named.
+bool is_too_small(const TableStudy& study, std::string_view kind) {
+  const TableEffect* effect = study.find(kind);
+  return is_denied(study, kind) || (effect != nullptr && !effect->worth_naming);
+}
+
 bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
 /// The connection that the motion names if the table names the other one: then neither is certain.
@@ -58,7 +64,7 @@ void take_back(const TableStudy& study, DiagnosisVerdict& verdict) {
 std::vector<std::string> absent_by_table(const TableStudy& study) {
   if (study.empty() || !study.rows.has_effort()) return {};
   for (const std::string_view kind : kConnections)
-    if (!is_denied(study, kind)) return {};
+    if (!is_too_small(study, kind)) return {};
   return {kConnections.begin(), kConnections.end()};
 }
 

@@ -10,6 +10,7 @@
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
+#include "host/identify/repeated_counts.hpp"
 #include "host/identify/smooth_acceleration.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 #include "host/statistics.hpp"
@@ -57,6 +58,18 @@ double cutoff_of(const Record& record, const AccelerationNoise& sensor, double i
          inertia * std::sqrt(sensor.variance_below(cutoff_Hz)) > kNoiseShare * effort)
     cutoff_Hz *= kStep;
   return cutoff_Hz;
+}
+
+/// Response of the smoothed acceleration to one reading, one value a row.
+std::vector<double> acceleration_of_a_reading(const ZeroPhaseLowPass& low_pass, double rate_Hz, double cutoff_Hz) {
+  constexpr double kReach = 2.0;  // periods of the cut-off
+  const auto reach = static_cast<std::size_t>(std::ceil(kReach * rate_Hz / cutoff_Hz));
+  std::vector<double> reading(2 * reach + 1, 0.0);
+  reading[reach] = 1.0;
+  const std::vector<double> low = low_pass(reading);
+  std::vector<double> response(low.size(), 0.0);
+  for (std::size_t k = 1; k + 1 < low.size(); ++k) response[k] = low[k + 1] - 2.0 * low[k] + low[k - 1];
+  return response;
 }
 
 struct Builder {
@@ -122,8 +135,11 @@ struct Builder {
     }
     ++blocks;
     if (!judges && !is_steady(speed, slow, inertia, signals.acceleration, effort)) rows.steady = false;
-    noise += std::pow(inertia * std::sqrt(sensor.variance_below(signals.cutoff_Hz)), 2) *
-             static_cast<double>(signals.kept.size());
+    const double variance = inertia * inertia * sensor.variance_below(signals.cutoff_Hz);
+    std::vector<double> alike(record.size(), 1.0);
+    if (const double count = by_speed ? 0.0 : encoder_step(record, model.data); count > 0.0)
+      alike = repeated_counts(travel, count, acceleration_of_a_reading(low_pass, rate_Hz, signals.cutoff_Hz));
+    for (const std::size_t k : signals.kept) noise += variance * alike[k];
     const double cutoff_Hz = signals.cutoff_Hz;
     rows.lowest_cutoff_Hz = rows.signals.empty() ? cutoff_Hz : std::min(rows.lowest_cutoff_Hz, cutoff_Hz);
     rows.signals.push_back(std::move(signals));

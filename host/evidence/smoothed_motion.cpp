@@ -9,6 +9,7 @@
 #include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
+#include "host/identify/repeated_counts.hpp"
 #include "host/statistics.hpp"
 #include "sim/drive.hpp"
 
@@ -70,15 +71,19 @@ std::vector<bool> find_standing(const std::vector<double>& x, double resolution,
   return standing;
 }
 
-/// Information of a quantised position: much at an edge (the axis is between two counts), little on a count.
+/// Information of a quantised position: much at an edge (the axis is between two counts), little on a count, less where
+/// the errors of successive counts are alike. `alike`: see repeated_counts().
 template <typename Observations>
 void observe_counts(const std::vector<double>& x, double resolution, double period_s, double lead,
-                    const std::vector<double>& w, Observations& observed) {
+                    const std::vector<double>& w, const std::vector<double>& alike, Observations& observed) {
   const double noise = resolution * resolution / 12.0;  // eq. (12)
   for (std::size_t k = 1; k < x.size(); ++k) {
     const double counts = std::abs(x[k] - x[k - 1]) / resolution;
     auto& sample = observed[k];
-    if (counts > 1.5) continue;
+    if (counts > 1.5) {
+      sample.variance *= alike[k];
+      continue;
+    }
     if (counts > 0.5) {
       const double moved = std::clamp(w[k] * lead * period_s, -resolution, resolution);
       sample.value = 0.5 * (x[k] + x[k - 1]) + 0.5 * moved;
@@ -206,7 +211,12 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const std::vector<bool> standing = find_standing(record.x, resolution, period_s);
   for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];
   doubt_friction(rough_w, standing, level_V, observed);
-  if (resolution > 0.0) observe_counts(record.x, resolution, period_s, data.lead, rough_w, observed);
+  if (resolution > 0.0) {
+    const auto quietest = std::ranges::min_element(motion_.w_variance) - motion_.w_variance.begin();
+    const std::vector<double> alike =
+        repeated_counts(motion_.x, resolution, shift_weights(static_cast<std::size_t>(quietest)).w_of_reading);
+    observe_counts(record.x, resolution, period_s, data.lead, rough_w, alike, observed);
+  }
   solve_gains(observed, creep * creep, start_variance);
   smooth(observed, u_V, start);
 }

@@ -71,6 +71,7 @@ double example_size(sim::Scale scale, sim::DriveKind kind) {
     case sim::Scale::top_speed:
       return rotary ? 60.0 : 0.3;
     case sim::Scale::travel:
+    case sim::Scale::position:
       return rotary ? 300.0 : 0.3;
     case sim::Scale::duration:
       return 60.0;

@@ -195,9 +195,10 @@ class Search {
     return first;
   }
 
-  /// What the last term takes of x2 - x, um RMS. Less than the sensors' steps make by themselves is none of the
-  /// machine's: two grids beat against each other.
+  /// What the last term takes of x2 - x, um RMS; of a wave all of it, also what is lost in the means of the rows. Less
+  /// than the sensors' steps make by themselves is none of the machine's: two grids beat against each other.
   double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    if (terms.back().kind == "encoder_cyclic_error") return fit.factors.tail(2).norm() / std::numbers::sqrt2;
     const MatrixXd own = terms.back().columns(rows_);
     return rms(without(own * fit.factors.tail(own.cols()), base_));
   }

@@ -40,7 +40,7 @@ const EffectInfo backlash{
                     .doc = "of that mode",
                     .lower = 0.001,
                     .upper = 1.0,
-                    .starts = {0.05}},
+                    .starts = {0.05, 0.6}},  // a spring behind the gap, or hard contact
                    {.id = "load_fraction",
                     .rotary_key = "load_fraction",
                     .linear_key = "load_fraction",

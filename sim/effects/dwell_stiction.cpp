@@ -25,7 +25,7 @@ const EffectInfo dwell_stiction{
                     .doc = "g: growth of the static friction after a long rest",
                     .lower = 0.0,
                     .upper = 5.0,
-                    .starts = {0.3}},
+                    .starts = {0.5, 0.15}},
                    {.id = "time_constant",
                     .rotary_key = "time_constant_s",
                     .linear_key = "time_constant_s",

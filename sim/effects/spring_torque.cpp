@@ -33,7 +33,7 @@ const EffectInfo spring_torque{
                     .doc = "x0: position at which the spring is relaxed",
                     .lower = -1e5,
                     .upper = 1e5,
-                    .scale = Scale::travel,
+                    .scale = Scale::position,
                     .starts = {0.0}}},
     .shows = "The mean of forward and backward residual torque is linear in position",
     .along = {"position"},

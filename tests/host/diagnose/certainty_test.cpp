@@ -48,10 +48,19 @@ TEST(Certainty, WhatIsImprobableIsNotNamed) {
 
 TEST(Certainty, RivalsThatTogetherHoldItAreAGroup) {
   const Diagnosis diagnosis =
-      claimed({"constant_torque"}, {candidate({"constant_torque"}, 0.45), candidate({"dac_offset"}, 0.4)});
+      claimed({"constant_torque"}, {candidate({"constant_torque"}, 0.55), candidate({"dac_offset"}, 0.41)});
   EXPECT_EQ(diagnosis.verdict.status, Status::ambiguous);
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("constant_torque", "dac_offset"));
   EXPECT_THAT(modelled_kinds(diagnosis), ElementsAre("constant_torque"));
+}
+
+TEST(Certainty, WhatIsDeniedByItselfIsNoRival) {
+  const Diagnosis diagnosis = claimed(
+      {"constant_torque"},
+      {candidate({"constant_torque"}, 0.5), candidate({"dac_offset"}, 0.42), candidate({"spring_torque"}, 0.04)});
+  EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("constant_torque", "dac_offset"));
+  const Diagnosis of_two = claimed({"compliance"}, {candidate({"compliance"}, 0.92), candidate({"backlash"}, 0.04)});
+  EXPECT_EQ(of_two.verdict.status, Status::ambiguous) << "one name alone needs 95 %";
 }
 
 /// Most records cannot tell an offset of the command from a weight, but they can tell the encoder's error from both.
@@ -63,21 +72,29 @@ TEST(Certainty, WhatIsCertainStandsBesideAGroup) {
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
 }
 
-TEST(Certainty, APairStaysNamedWhileItsFirstIsMoreProbableThanNot) {
-  const Diagnosis diagnosis =
-      claimed({"cogging", "backlash"}, {candidate({"cogging"}, 0.3), candidate({"cogging", "backlash"}, 0.67)});
-  EXPECT_EQ(diagnosis.verdict.status, Status::missing);
-  EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("cogging", "backlash"));
+TEST(Certainty, APairIsNamedWhereItHoldsTheClaim) {
+  const std::vector<JudgedCandidate> surely{candidate({"cogging"}, 0.02), candidate({"cogging", "backlash"}, 0.96)};
+  EXPECT_THAT(claimed({"cogging", "backlash"}, surely).verdict.effects, ElementsAre("cogging", "backlash"));
+  const std::vector<JudgedCandidate> perhaps{candidate({"cogging"}, 0.3), candidate({"cogging", "backlash"}, 0.67)};
+  EXPECT_THAT(claimed({"cogging", "backlash"}, perhaps).verdict.effects, ElementsAre("cogging"));
 }
 
-/// Was "missing: encoder_cyclic_error + presliding" with 16 % for the second.
-TEST(Certainty, TheSecondOfAPairIsNamedOnlyWhereItIsMoreProbableThanNot) {
+TEST(Certainty, RivalsForThePlaceOfTheSecondAreAGroupBesideTheFirst) {
+  const Diagnosis diagnosis = claimed(
+      {"cogging", "backlash"}, {candidate({"cogging", "backlash"}, 0.6), candidate({"cogging", "compliance"}, 0.37)});
+  EXPECT_EQ(diagnosis.verdict.status, Status::missing);
+  EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("cogging"));
+  EXPECT_THAT(diagnosis.verdict.alternatives, ElementsAre(ElementsAre("backlash", "compliance")));
+}
+
+TEST(Certainty, WhatIsNotCertainBesideTheFirstIsNotNamed) {
   const Diagnosis diagnosis =
       claimed({"encoder_cyclic_error", "presliding"},
-              {candidate({"encoder_cyclic_error"}, 0.05), candidate({"encoder_cyclic_error", "presliding"}, 0.16),
+              {candidate({"encoder_cyclic_error"}, 0.2), candidate({"encoder_cyclic_error", "presliding"}, 0.16),
                candidate({"encoder_cyclic_error", "stribeck"}, 0.6)});
   EXPECT_EQ(diagnosis.verdict.status, Status::missing);
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
+  EXPECT_THAT(diagnosis.verdict.alternatives, IsEmpty());
 
   Diagnosis of_many = diagnosis;
   of_many.verdict.effects = {"encoder_cyclic_error", "presliding"};

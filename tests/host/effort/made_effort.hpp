@@ -36,16 +36,17 @@ inline Point slow_turning(double t_s) {
           8.0 * slow * std::cos(slow * t_s) + wave * std::cos(wave * t_s)};
 }
 
-/// A record of a motion and of the effort that it takes beyond inertia and friction. The sampling jitters, the current
-/// comes in steps of 2 mA.
+/// A record of a motion and of the effort that it takes beyond inertia and friction. The sampling jitters (s), the
+/// current comes in steps of 2 mA.
 template <typename Motion, typename Further>
-host::Record record_of(Motion motion, Further further, double from_s, double to_s, unsigned seed) {
+host::Record record_of(Motion motion, Further further, double from_s, double to_s, unsigned seed,
+                       double jitter = 2e-5) {
   host::Record record;
   record.path = "made.csv";
   record.sample_period_s = 0.001;
   record.header["effort_timing_samples"] = "0";  // the current acts at the instant of its row
   std::mt19937 random(seed);
-  std::normal_distribution<double> jitter_s(0.0, 2e-5), noise_A(0.0, 0.01);
+  std::normal_distribution<double> jitter_s(0.0, jitter), noise_A(0.0, 0.01);
   const double step = kTurn / 20000.0;
   for (double t_s = from_s; t_s < to_s; t_s += record.sample_period_s) {
     const Point point = motion(t_s + jitter_s(random));

@@ -61,6 +61,35 @@ TEST(SmoothedMotion, IsAsNearToTheTruthAsItSays) {
   EXPECT_LT(rms(w_off), 0.1 * resolution / std::sqrt(6.0) / HandMade::kPeriod_s / lead);
 }
 
+/// Errors of the smoothed speed at a steady number of counts a sample, over the deviation that the smoother states.
+double speed_error_over_stated(double counts_a_sample) {
+  const sim::DataSheet data = HandMade::model().data;
+  const double w = counts_a_sample * data.encoder_resolution / data.lead / HandMade::kPeriod_s;
+  host::Record record;
+  record.path = "steady.csv";
+  record.columns = {"t_s", "u_V", "x_mm"};
+  record.sample_period_s = HandMade::kPeriod_s;
+  for (int k = 0; k < 4000; ++k) {
+    const double t_s = k * HandMade::kPeriod_s, x = data.lead * w * t_s + 0.3 * data.encoder_resolution;
+    record.t_s.push_back(t_s);
+    record.u_V.push_back((HandMade::kViscous * w + HandMade::kCoulomb) / data.effort_per_volt());
+    record.x.push_back(std::round(x / data.encoder_resolution) * data.encoder_resolution);
+  }
+  const host::SmoothedMotion motion = smooth(record).motion();
+  std::vector<double> off;
+  for (std::size_t k = 200; k + 200 < motion.w.size(); ++k)
+    off.push_back((motion.w[k] - w) / std::sqrt(motion.w_variance[k]));
+  return rms(off);
+}
+
+/// Near a whole number of counts a sample the errors of successive counts are alike (1.7 deviations if they are taken
+/// for independent).
+TEST(SmoothedMotion, StatesTheErrorOfCountsThatRepeat) {
+  EXPECT_LT(speed_error_over_stated(4.05), 1.2);
+  EXPECT_LT(speed_error_over_stated(3.02), 1.2);
+  EXPECT_LT(speed_error_over_stated(4.37), 1.2);
+}
+
 TEST(SmoothedMotion, KnowsWhereTheAxisStands) {
   const TrueMotion truth;
   const host::MotionSmoother smoother = smooth(HandMade::record(kDuration_s));
