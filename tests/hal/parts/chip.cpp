@@ -58,7 +58,11 @@ void Chip::wire_ports() {
   spi.is_wired = [this] {
     return port_a.function(5) == kSpi1 && port_a.function(6) == kSpi1 && port_a.function(7) == kSpi1;
   };
-  port_a.on_change[4] = [this](Drive drive) { converter.select_line(drive != Drive::low); };
+  port_a.on_change[4] = [this](Drive drive) {
+    const bool drives = drive == Drive::low || drive == Drive::high;
+    if (drives && port_a.edge_ns(4) > 20.0) bus.complain("converter: SYNC's edge is slower than a frame's times");
+    converter.select_line(drive != Drive::low);
+  };
   port_b.on_change[0] = [this](Drive drive) { converter.clear_line(drive == Drive::high); };  // pulled down outside
   converter.clear_line(false);
   timer2.is_wired = [this] {
