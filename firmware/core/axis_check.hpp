@@ -112,19 +112,4 @@ constexpr Refusal check_sequence(const DriveSequenceParameters& s) {
   return is_sound && (!s.ready_input || s.amplifier_wait > 0) ? Refusal::none : Refusal::amplifier_ready;
 }
 
-/// Every monitor needs thresholds, and none may be so high that it does not protect.
-template <typename Scalar>
-constexpr Refusal check_monitors(const AxisParameters<Scalar>& p) {
-  const monitor_ceilings::Scaled<Scalar> scaled(p);
-  Refusal found = Refusal::none;
-  MonitoredFaults::for_each([&](auto declared) {
-    using Declaration = decltype(declared);
-    if constexpr (monitored::kHasThresholds<Declaration>)
-      if (found == Refusal::none && !Declaration::protects(p, scaled)) found = monitored::refusal_of<Declaration>();
-  });
-  if (found == Refusal::none && (p.monitors.capture_stride <= 0 || p.monitors.input_samples <= 0))
-    return Refusal::sample_period;
-  return found;
-}
-
 }  // namespace firmware

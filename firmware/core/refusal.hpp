@@ -5,8 +5,7 @@
 
 namespace firmware {
 
-/// The low twelve bits are the id of the parameter concerned; 0: none. Refusals by a monitor's declaration have no name
-/// here (supervision/monitored_faults.hpp).
+/// The low twelve bits are the id of the parameter concerned; 0: none.
 enum class Refusal : std::uint16_t {
   none = 0,
   sample_period = 17,              ///< not above 0

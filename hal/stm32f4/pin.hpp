@@ -11,9 +11,11 @@ class Pin {
  public:
   constexpr Pin(Gpio& port, std::uint32_t number) : port_(port), number_(number) {}
 
-  /// Push-pull, with `level` from the beginning.
-  void make_output(bool level) const {
+  /// Push-pull, with `level` from the beginning. Edges take up to 100 ns, `fast` ones 6 ns (datasheet, I/O AC
+  /// characteristics).
+  void make_output(bool level, bool fast = false) const {
     set(level);
+    write_field(port_.OSPEEDR, fast ? 2 : 0);
     write_field(port_.MODER, 1);
   }
 

@@ -34,8 +34,8 @@ struct Rcc {
   static constexpr std::uint32_t kSwitchToPll = 2u << 0, kSwitchedMask = 3u << 2, kSwitchedToPll = 2u << 2;  // CFGR
   static constexpr std::uint32_t kApb1By4 = 5u << 10, kApb2By2 = 4u << 13;  // CFGR, 7.3.3
   static constexpr std::uint32_t kGpioA = 1u << 0, kGpioB = 1u << 1, kGpioC = 1u << 2, kCcm = 1u << 20,
-                                 kDma2 = 1u << 22;  // AHB1ENR, 7.3.10
-  static constexpr std::uint32_t kOtgFs = 1u << 7;  // AHB2ENR, 7.3.11
+                                 kDma1 = 1u << 21, kDma2 = 1u << 22;  // AHB1ENR, 7.3.10
+  static constexpr std::uint32_t kOtgFs = 1u << 7;                    // AHB2ENR, 7.3.11
   static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim4 = 1u << 2, kTim5 = 1u << 3, kTim13 = 1u << 7,
                                  kWindowWatchdog = 1u << 11, kPower = 1u << 28;                             // APB1ENR
   static constexpr std::uint32_t kUsart1 = 1u << 4, kAdc1 = 1u << 8, kSpi1 = 1u << 12, kSyscfg = 1u << 14;  // APB2ENR
@@ -95,6 +95,7 @@ struct Timer {
   static constexpr std::uint32_t kEncoderBothEdges = 3u << 0, kStartOnTrigger = 6u << 0;   // SMCR.SMS, 18.4.3, 18.3.12
   static constexpr std::uint32_t kFromInput1 = 5u << 4;                                    // SMCR.TS: TI1FP1
   static constexpr std::uint32_t from_trigger(std::uint32_t input) { return input << 4; }  // likewise: ITR0 to ITR3
+  static constexpr std::uint32_t kCompare1Request = 1u << 9, kCompare2Request = 1u << 10;  // DIER: DMA, 18.4.4
   static constexpr std::uint32_t kCapture3Flag = 1u << 3, kOvercapture3Flag = 1u << 11,
                                  kCapture4Flag = 1u << 4;  // SR, 18.4.5
   static constexpr std::uint32_t kUpdate = 1u << 0;        // EGR, 18.4.6
@@ -132,13 +133,14 @@ inline Adc& adc1() { return at_address<Adc>(0x40012000); }
 inline Register& adc_common_control() { return at_address<Register>(0x40012304); }  // 13.13.16
 inline constexpr std::uint32_t kAdcClockBy4 = 1u << 16;
 
-/// DMA controller 2, section 10.5.
+/// DMA controllers, section 10.5.
 struct DmaStream {
   Register CR, NDTR, PAR, M0AR, M1AR, FCR;
 
   static constexpr std::uint32_t kEnable = 1u << 0, kInterruptOnComplete = 1u << 4, kCircular = 1u << 8,
-                                 kMemoryIncrement = 1u << 10, kPeripheral16 = 1u << 11, kMemory16 = 1u << 13,
-                                 kHighPriority = 2u << 16;  // CR, 10.5.5
+                                 kMemoryIncrement = 1u << 10, kPeripheral16 = 1u << 11, kPeripheral32 = 2u << 11,
+                                 kMemory16 = 1u << 13, kMemory32 = 2u << 13, kHighPriority = 2u << 16,
+                                 kChannel5 = 5u << 25;  // CR, 10.5.5
 };
 struct Dma {
   Register LISR, HISR, LIFCR, HIFCR;
@@ -146,6 +148,7 @@ struct Dma {
 
   static constexpr std::uint32_t kStream0Complete = 1u << 5, kStream0All = 0x3Du;  // LISR and LIFCR, 10.5.1
 };
+inline Dma& dma1() { return at_address<Dma>(0x40026000); }
 inline Dma& dma2() { return at_address<Dma>(0x40026400); }
 
 /// Serial port, section 30.6.

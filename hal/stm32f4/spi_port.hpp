@@ -11,7 +11,7 @@ class SpiPort {
 
   /// Mode 1: clock idles low, data are taken at its falling edge.
   void start() {
-    select_.make_output(true);
+    select_.make_output(true, true);  // the times of a frame are below 100 ns
     registers_.CR1 = kSending;
     registers_.CR1 = kSending | Spi::kEnable;
   }

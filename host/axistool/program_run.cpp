@@ -131,7 +131,8 @@ class Parts {
         machine_(machine),
         relative_(relative),
         arguments_(arguments),
-        at_machine_(board, machine.scale, relative, arguments) {}
+        at_machine_(board, machine.scale, relative, arguments),
+        recorder_(board, machine) {}
 
   ProgramOutcome run(const std::string& text) {
     const host::PathPoint start = here();
@@ -158,6 +159,8 @@ class Parts {
       probed.push_back(here());
       begin = probe.move + 1;
     }
+    recorder_.stop();
+    compare_with_plan();
     return outcome_;
   }
 
@@ -167,12 +170,13 @@ class Parts {
   void follow(const std::vector<host::PathMove>& moves, firmware::ProbeStop stop = firmware::ProbeStop::none) {
     planned_.path = plan_moves(moves, arguments_, machine_);
     if (planned_.path.knots.size() < 2) return;
+    followed_.push_back({planned_.path, recorder_.capture().number.size()});
     host::PathOutcome part;
     {
       RunLine line(talks(arguments_), planned_.path);
       SignalsWait signals;
       part = host::run_path(
-          board_, planned_.path, machine_, relative_, true,
+          board_, planned_.path, machine_, relative_, recorder_,
           [&](const host::PathProgress& progress) {
             signals.let_in();
             line.draw(progress, held);
@@ -184,13 +188,24 @@ class Parts {
     outcome_.path_s += part.state.elapsed / machine_.scale.rate_Hz;
     outcome_.clock_s += part.clock_s;
     outcome_.planned_s += planned_.path.duration_s();
-    outcome_.lost_rows += part.capture.lost;
-    const std::vector<double> contour_um = host::contour_error_um(part.capture, planned_.path, machine_.scale);
-    for (const double one : contour_um) outcome_.worst_um = std::max(outcome_.worst_um, one);
-    outcome_.rows += contour_um.size();
-    outcome_.squares_um2 += std::inner_product(contour_um.begin(), contour_um.end(), contour_um.begin(), 0.0);
-    if (!arguments_.capture.empty())
-      host::write_record(host::path_record(part, machine_, contour_um), arguments_.capture);
+  }
+
+  /// Rows of a rest belong to a part beside it.
+  void compare_with_plan() {
+    const host::PathCapture& capture = recorder_.capture();
+    outcome_.lost_rows = capture.lost;
+    std::vector<double> all_um;
+    for (std::size_t part = 0; part < followed_.size(); ++part) {
+      const std::size_t end = part + 1 < followed_.size() ? followed_[part + 1].first_row : capture.number.size();
+      const std::vector<double> contour_um =
+          host::contour_error_um(capture, followed_[part].path, machine_.scale, followed_[part].first_row, end);
+      all_um.insert(all_um.end(), contour_um.begin(), contour_um.end());
+    }
+    for (const double one : all_um) outcome_.worst_um = std::max(outcome_.worst_um, one);
+    outcome_.rows = all_um.size();
+    outcome_.squares_um2 = std::inner_product(all_um.begin(), all_um.end(), all_um.begin(), 0.0);
+    if (!arguments_.capture.empty() && !followed_.empty())
+      host::write_record(host::path_record(capture, machine_, all_um), arguments_.capture);
   }
 
   /// Whether the probe is already in the state that a move looks for. G38.3 and G38.5 end there at once (LinuxCNC,
@@ -214,11 +229,18 @@ class Parts {
                                      arguments_.file, line, word_of(probe), sought_by(probe), probe.tenths() + 1);
   }
 
+  struct Followed {
+    host::PlannedPath path;
+    std::size_t first_row;  ///< of the record
+  };
+
   host::BoardClient& board_;
   const host::PathBoard& machine_;
   bool relative_;
   const RunArguments& arguments_;
   Operator at_machine_;
+  host::PathRecorder recorder_;
+  std::vector<Followed> followed_;
   Planned planned_;
   ProgramOutcome outcome_;
 };

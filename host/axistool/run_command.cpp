@@ -121,17 +121,13 @@ void tell(const ProgramOutcome& outcome, const RunArguments& arguments, nlohmann
              outcome.worst_um);
 }
 
-/// A probing program needs a probe; its record would have gaps.
+/// A probing program needs a probe.
 void require_probe(host::BoardClient& board, const RunArguments& arguments, const host::GcodeProgram& program) {
-  if (program.probes.empty()) return;
-  const std::string where =
-      fmt::format("{} probes in line {}", arguments.file, program.moves[program.probes.front().move].line);
-  if ((board.probe_state().flags & firmware::kProbeWired) == 0)
-    throw Failure(
-        ExitCode::refused,
-        where + ", but no probe is wired: set probe.input to 1 (its input closes on contact) or 2 (it opens)");
-  if (!arguments.capture.empty())
-    throw Failure(ExitCode::refused, where + ", and is run in parts, of which --capture cannot make one record");
+  if (program.probes.empty() || (board.probe_state().flags & firmware::kProbeWired) != 0) return;
+  throw Failure(ExitCode::refused,
+                fmt::format("{} probes in line {}, but no probe is wired: set probe.input to 1 (its input closes on "
+                            "contact) or 2 (it opens)",
+                            arguments.file, program.moves[program.probes.front().move].line));
 }
 
 /// Checks of the program that need no machine.

@@ -10,7 +10,6 @@
 
 #include "firmware/core/path/path_follower.hpp"
 #include "host/device/capture.hpp"
-#include "host/device/capture_channels.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -60,57 +59,6 @@ std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathSc
   std::memcpy(bytes.data(), words.data(), bytes.size());
   return bytes;
 }
-
-/// Collects PathRows of all axes as they arrive.
-class PathRows {
- public:
-  PathRows(BoardClient& board, const firmware::ParameterValues& values, const PathScale& scale, PathCapture& capture)
-      : board_(board), capture_(capture), unit_mm_(scale.unit_mm) {
-    const bool fixed_point = board.identify().fixed_point != 0;
-    const BoardState status = board.status();
-    capture.mm.resize(scale.axes.size());
-    capture.reference_mm.resize(scale.axes.size());
-    for (std::size_t i = 0; i < scale.axes.size(); ++i) order_.push_back(i);
-    std::ranges::sort(order_, {}, [&](std::size_t i) { return scale.axes[i]; });
-    for (std::size_t i = 0; i < scale.axes.size(); ++i) {
-      const std::size_t axis = scale.axes[i];
-      scales_.emplace_back(values.axis(axis), fixed_point, status.axis.at(axis).counts());
-      request_.channels[axis] =
-          1u << static_cast<unsigned>(Channel::counts) | 1u << static_cast<unsigned>(Channel::reference);
-    }
-    first_ = order_.front();
-    request_.channels[scale.axes[first_]] |= 1u << static_cast<unsigned>(Channel::dac_code);
-    request_.every = static_cast<std::uint16_t>(std::max(1.0, std::ceil(scale.rate_Hz / kMostRows_Hz)));
-    capture.row_period_s = request_.every / scale.rate_Hz;
-  }
-
-  void start() { board_.start_capture(request_); }
-
-  bool fetch(milliseconds patience) {
-    const auto samples = board_.next_samples(patience);
-    if (!samples) return false;
-    const std::size_t words = request_.words(), rows = rows_in(*samples, words);
-    for (std::size_t row = 0; row < rows; ++row) {
-      capture_.number.push_back(samples->first_row + static_cast<std::uint32_t>(row));
-      const std::uint32_t* word = samples->words.data() + row * words;
-      for (const std::size_t i : order_) {
-        if (i == first_) capture_.u_V.push_back(scales_[i](Channel::dac_code, *word++));
-        capture_.mm[i].push_back(unit_mm_[i] * scales_[i](Channel::counts, *word++));
-        capture_.reference_mm[i].push_back(unit_mm_[i] * scales_[i](Channel::reference, *word++));
-      }
-    }
-    return true;
-  }
-
- private:
-  BoardClient& board_;
-  PathCapture& capture_;
-  std::vector<double> unit_mm_;
-  firmware::CaptureRequest request_;
-  std::vector<std::size_t> order_;  ///< of the words in a row
-  std::size_t first_ = 0;
-  std::vector<ChannelScale> scales_;
-};
 
 /// Sends nodes while the board has room, and reads the board's progress.
 class Stream {
@@ -198,35 +146,111 @@ std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale
   return positions(board.open_path(open_request(scale, {}, relative)), scale);
 }
 
-PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative, bool captures,
-                     const std::function<PathWish(const PathProgress&)>& follow, firmware::ProbeStop probe) {
+namespace {
+
+/// The references follow the end of a path by the samples of their preview; another path begins at rest.
+void follow_to_rest(BoardClient& board, const PathScale& scale, PathRecorder& recorder) {
+  const auto until = steady_clock::now() + std::chrono::seconds(1);
+  const auto moves = [](const auto& axis) { return (axis.flags & firmware::kAxisAtRest) == 0; };
+  for (bool moving = true; moving && steady_clock::now() < until;) {
+    board.heartbeat();
+    const BoardState state = board.status();
+    moving = std::ranges::any_of(scale.axes, [&](std::size_t axis) { return moves(state.axis.at(axis)); });
+    recorder.fetch(milliseconds(moving ? 2 : 0));
+  }
+}
+
+}  // namespace
+
+PathRecorder::PathRecorder(BoardClient& board, const PathBoard& machine) : board_(board) {
+  const PathScale& scale = machine.scale;
+  const bool fixed_point = board.identify().fixed_point != 0;
+  const BoardState status = board.status();
+  const firmware::ParameterValues values = board.read_values();
+  unit_mm_ = scale.unit_mm;
+  capture_.mm.resize(scale.axes.size());
+  capture_.reference_mm.resize(scale.axes.size());
+  for (std::size_t i = 0; i < scale.axes.size(); ++i) order_.push_back(i);
+  std::ranges::sort(order_, {}, [&](std::size_t i) { return scale.axes[i]; });
+  for (std::size_t i = 0; i < scale.axes.size(); ++i) {
+    const std::size_t axis = scale.axes[i];
+    scales_.emplace_back(values.axis(axis), fixed_point, status.axis.at(axis).counts());
+    request_.channels[axis] =
+        1u << static_cast<unsigned>(Channel::counts) | 1u << static_cast<unsigned>(Channel::reference);
+  }
+  first_ = order_.front();
+  request_.channels[scale.axes[first_]] |= 1u << static_cast<unsigned>(Channel::dac_code);
+  request_.every = static_cast<std::uint16_t>(std::max(1.0, std::ceil(scale.rate_Hz / kMostRows_Hz)));
+  capture_.row_period_s = request_.every / scale.rate_Hz;
+}
+
+PathRecorder::~PathRecorder() {
+  try {
+    if (runs_) board_.stop_capture();
+  } catch (const Failure&) {  // the board is gone
+  }
+}
+
+void PathRecorder::start() {
+  if (runs_) return;
+  board_.start_capture(request_);
+  runs_ = true;
+}
+
+bool PathRecorder::fetch(milliseconds patience) {
+  const auto samples = board_.next_samples(patience);
+  if (!samples) return false;
+  const std::size_t words = request_.words(), rows = rows_in(*samples, words);
+  for (std::size_t row = 0; row < rows; ++row) {
+    capture_.number.push_back(samples->first_row + static_cast<std::uint32_t>(row));
+    const std::uint32_t* word = samples->words.data() + row * words;
+    for (const std::size_t i : order_) {
+      if (i == first_) capture_.u_V.push_back(scales_[i](Channel::dac_code, *word++));
+      capture_.mm[i].push_back(unit_mm_[i] * scales_[i](Channel::counts, *word++));
+      capture_.reference_mm[i].push_back(unit_mm_[i] * scales_[i](Channel::reference, *word++));
+    }
+  }
+  return true;
+}
+
+void PathRecorder::stop() {
+  if (!runs_) return;
+  for (int k = 0; k < 10; ++k) {
+    fetch(milliseconds(2));
+    board_.heartbeat();
+  }
+  capture_.dropped_by_board = board_.stop_capture().dropped;
+  runs_ = false;
+  while (fetch(milliseconds(50))) continue;
+  capture_.lost = lost_rows(capture_.number);
+}
+
+PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative,
+                     PathRecorder& recorder, const std::function<PathWish(const PathProgress&)>& follow,
+                     firmware::ProbeStop probe) {
   PathOutcome outcome;
   const firmware::PathUnits units = units_of(path, scale.scale);
   const auto start = positions(board.open_path(open_request(scale.scale, units, relative, probe)), scale.scale);
   const PathWords words = path_words(path, scale.scale, units, start);
   Stream stream(board, words, scale.scale, path.stops);
-  std::optional<PathRows> rows;
-  bool is_capturing = false;
   try {
     while (stream.sent_s() < kHeadStart_s && stream.send()) continue;
-    if (captures) {
-      rows.emplace(board, board.read_values(), scale.scale, outcome.capture);
-      rows->start();
-      is_capturing = true;
-    }
+    recorder.start();
+    const std::vector<std::uint32_t>& rows = recorder.capture().number;
+    while (!rows.empty() && recorder.fetch(milliseconds(0))) continue;  // of the rest since an earlier path
+    const std::size_t first = rows.size();
     stream.set(board.start_path());
     PathWish given;
     auto asked = steady_clock::now();
-    std::size_t rows_asked = 0;
+    std::size_t rows_asked = first;
     for (;;) {
       const bool sent = stream.send();
-      for (int k = 0; k < kReportsARound && rows && rows->fetch(sent ? milliseconds(0) : milliseconds(2));) ++k;
-      if (!sent && !rows) std::this_thread::sleep_for(milliseconds(2));
+      for (int k = 0; k < kReportsARound && recorder.fetch(sent ? milliseconds(0) : milliseconds(2)); ++k) continue;
       // A simulated board in this process has its own time, which the rows give.
       const auto now = steady_clock::now();
-      if (now - asked < kRound && outcome.capture.number.size() < rows_asked + 16) continue;
+      if (now - asked < kRound && rows.size() < rows_asked + 16) continue;
       asked = now;
-      rows_asked = outcome.capture.number.size();
+      rows_asked = rows.size();
       stream.ask();
       const auto phase = static_cast<PathPhase>(stream.state().phase);
       if (phase == PathPhase::done || phase == PathPhase::idle) break;
@@ -240,22 +264,11 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
       given = wish;
     }
     outcome.state = stream.state();
-    if (!outcome.capture.number.empty())
-      outcome.clock_s =
-          outcome.capture.row_period_s * (outcome.capture.number.back() - outcome.capture.number.front() + 1);
-    if (rows) {
-      for (int k = 0; k < 10; ++k) {
-        rows->fetch(milliseconds(2));
-        board.heartbeat();
-      }
-      outcome.capture.dropped_by_board = board.stop_capture().dropped;
-      while (rows->fetch(milliseconds(50))) continue;
-      outcome.capture.lost = lost_rows(outcome.capture.number);
-    }
+    follow_to_rest(board, scale.scale, recorder);
+    if (rows.size() > first) outcome.clock_s = recorder.capture().row_period_s * (rows.back() - rows[first] + 1);
   } catch (const Failure&) {
     try {
       board.stop_path();
-      if (is_capturing) board.stop_capture();
     } catch (const Failure&) {  // the board is gone, as the first failure reports
     }
     throw;
@@ -321,14 +334,15 @@ PathPoint point_of(const std::vector<std::vector<double>>& mm, std::size_t row, 
 
 }  // namespace
 
-std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale) {
+std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale,
+                                     std::size_t begin, std::size_t end) {
   std::vector<double> error_um;
-  if (path.knots.size() < 2) return std::vector<double>(capture.number.size(), 0.0);
+  if (path.knots.size() < 2) return std::vector<double>(end - begin, 0.0);
   PlanPlace place(path);
   PathPoint half = PathPoint::Zero();  // the encoder rounds down
   for (std::size_t i = 0; i < scale.axes.size(); ++i) half[static_cast<Eigen::Index>(i)] = scale.count_mm[i] / 2.0;
-  for (std::size_t k = 0; k < capture.number.size(); ++k) {
-    const std::uint32_t rows = k > 0 ? capture.number[k] - capture.number[k - 1] : 1;
+  for (std::size_t k = begin; k < end; ++k) {
+    const std::uint32_t rows = k > begin ? capture.number[k] - capture.number[k - 1] : 1;
     const double time_s =
         place.advance(point_of(capture.reference_mm, k, path.knots.front().position), rows, capture.row_period_s);
     const PathPoint seen = point_of(capture.mm, k, path.knots.front().position) + half;
@@ -346,8 +360,7 @@ std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPa
   return error_um;
 }
 
-Record path_record(const PathOutcome& outcome, const PathBoard& board, const std::vector<double>& contour_um) {
-  const PathCapture& capture = outcome.capture;
+Record path_record(const PathCapture& capture, const PathBoard& board, const std::vector<double>& contour_um) {
   Record record;
   const std::size_t first_axis = board.scale.axes.front();
   record.drive = firmware::kAxisNames.at(first_axis);

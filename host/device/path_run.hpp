@@ -1,12 +1,14 @@
 // Runs a planned path on a board: streams its nodes ahead of the motion, and records the encoders.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "firmware/core/path/probe_watch.hpp"
 #include "host/device/board_client.hpp"
+#include "host/device/capture_channels.hpp"
 #include "host/path/path_words.hpp"
 #include "host/record/record.hpp"
 
@@ -47,10 +49,36 @@ struct PathCapture {
   std::uint32_t dropped_by_board = 0;
 };
 
+/// Records the axes from the first path on that it is given to, through all further ones and the rests between them.
+class PathRecorder {
+ public:
+  PathRecorder(BoardClient& board, const PathBoard& machine);
+  PathRecorder(const PathRecorder&) = delete;
+  PathRecorder& operator=(const PathRecorder&) = delete;
+  ~PathRecorder();  ///< the board then captures no more
+
+  /// Once it runs, further calls do nothing.
+  void start();
+  /// Takes what has come; waits for so long if nothing has. False if nothing came.
+  bool fetch(std::chrono::milliseconds patience);
+  /// With all rows that the board has sent.
+  void stop();
+  const PathCapture& capture() const { return capture_; }
+
+ private:
+  BoardClient& board_;
+  PathCapture capture_;
+  std::vector<double> unit_mm_;
+  firmware::CaptureRequest request_;
+  std::vector<std::size_t> order_;  ///< of the words in a row
+  std::vector<ChannelScale> scales_;
+  std::size_t first_ = 0;
+  bool runs_ = false;
+};
+
 struct PathOutcome {
   firmware::PathStatePayload state;
-  PathCapture capture;   ///< empty unless asked for
-  double clock_s = 0.0;  ///< of the board, from start to rest; by the capture's rows
+  double clock_s = 0.0;  ///< of the board, from start to rest; by the recorder's rows
 };
 
 /// References of enabled, standing axes, where a path must begin. Opens a path, which may be opened again.
@@ -58,8 +86,8 @@ std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale
 
 /// Follows the path from its beginning to rest, or until the probe reaches the expected state. However it ends, the
 /// board is stopped. Throws what BoardClient throws, and Failure(refused) naming the node that the board refuses.
-PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative, bool captures,
-                     const std::function<PathWish(const PathProgress&)>& follow,
+PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative,
+                     PathRecorder& recorder, const std::function<PathWish(const PathProgress&)>& follow,
                      firmware::ProbeStop probe = firmware::ProbeStop::none);
 
 /// Position of the probe's edge on the last path, mm of each axis; empty if there was none. Throws
@@ -67,9 +95,14 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
 std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale& scale);
 
 /// As a record of the first axis, with the positions of the others and the contour error as further columns.
-Record path_record(const PathOutcome& outcome, const PathBoard& board, const std::vector<double>& contour_um);
+Record path_record(const PathCapture& capture, const PathBoard& board, const std::vector<double>& contour_um);
 
-/// Distance of the encoders' point from the path for each row, um.
-std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale);
+/// Distance of the encoders' point from the path for the rows from `begin` to before `end`, um.
+std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale,
+                                     std::size_t begin, std::size_t end);
+inline std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path,
+                                            const PathScale& scale) {
+  return contour_error_um(capture, path, scale, 0, capture.number.size());
+}
 
 }  // namespace host

@@ -34,16 +34,14 @@ void append_monitors(bool rotary, double dac_limit_V, double friction_V, std::ve
   constexpr double kLead_m_per_rad = 0.010 / (2.0 * std::numbers::pi);
   const double length = rotary ? 1.0 : 1e-3;
   const double speed = rotary ? 1.0 : kLead_m_per_rad;
-  firmware::for_each_threshold([&](auto declared, auto index) {
-    using Declaration = decltype(declared);
-    const firmware::ThresholdRow& row = std::get<index()>(Declaration::template kThresholds<float>).row;
+  for (const firmware::ThresholdRow& row : firmware::kThresholdRows) {
     const auto add = [&](double unit) {
       list.push_back({std::string(row.name), static_cast<double>(row.initial) * unit});
     };
     if (row.quantity == firmware::Quantity::length) add(length);
     if (row.quantity == firmware::Quantity::velocity) add(speed);
     if (row.quantity == firmware::Quantity::length_per_velocity) add(length / speed);
-  });
+  }
   list.push_back({"monitor.polarity_command", std::clamp(1.3 * friction_V, 0.3 * dac_limit_V, 0.8 * dac_limit_V)});
   list.push_back({"monitor.oscillation", 0.25 * dac_limit_V});
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "firmware/core/supervision/monitor_check.hpp"
+
 namespace host {
 
 namespace {

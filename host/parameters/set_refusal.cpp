@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "firmware/core/supervision/monitor_check.hpp"
 #include "host/dense_solutions.hpp"
 #include "host/parameters/monitor_relations.hpp"
 #include "host/parameters/parameter_names.hpp"
@@ -41,17 +42,6 @@ const char* words(PoleProblem problem) {
       break;
   }
   return "stable here, but not after the board's rounding";
-}
-
-/// Text of the monitor's declaration; empty if it has none.
-std::string declared_reason(Refusal refusal) {
-  std::string reason;
-  firmware::MonitoredFaults::for_each([&](auto declared) {
-    using Declaration = decltype(declared);
-    if constexpr (requires { Declaration::kWhyRefused; })
-      if (firmware::monitored::refusal_of<Declaration>() == refusal) reason = Declaration::kWhyRefused;
-  });
-  return reason;
 }
 
 }  // namespace
@@ -104,8 +94,12 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
     case Refusal::oscillation:
       return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no swing would reach it",
                          ceilings::kOscillationShare, ceilings::kOscillationShare * p.dac_limit_V);
+    case Refusal::travel:
+      return "monitor.travel_min must be below monitor.travel_max";
+    case Refusal::saturation_time:
+      return fmt::format("above {:g} s it would not protect", ceilings::kSaturation_s);
     default:
-      return declared_reason(refused.core);
+      return "";
   }
 }
 

@@ -102,6 +102,18 @@ INSTANTIATE_TEST_SUITE_P(
                            w.seen.reference_velocity = 0.0f;
                            return w;
                          }},
+                    Case{"overspeed_by_the_encoder", AxisFault::overspeed,
+                         [](float amount) {
+                           Watched w = moving_at(amount * kLimits.overspeed);
+                           w.seen.tachometer_velocity = 0.97f * kLimits.overspeed;
+                           return w;
+                         }},
+                    Case{"overspeed_by_the_tachometer", AxisFault::overspeed,
+                         [](float amount) {
+                           Watched w = moving_at(0.97f * kLimits.overspeed);
+                           w.seen.tachometer_velocity = amount * kLimits.overspeed;
+                           return w;
+                         }},
                     Case{"encoder_tachometer_disagreement", AxisFault::encoder_tachometer_disagreement,
                          [](float amount) {
                            Watched w = moving_at(0.0f);
@@ -241,6 +253,23 @@ TEST(MonitorLimits, NoneCanBeSwitchedOff) {
   EXPECT_EQ(error_after([](auto& m) { m.oscillation_V = 0.0f; }), Refusal::oscillation);
   EXPECT_EQ(error_after([](auto& m) { m.travel_max_counts = m.travel_min_counts; }), Refusal::travel);
   EXPECT_EQ(error_after([](auto& m) { m.saturation_samples = 0; }), Refusal::saturation_time);
+}
+
+/// Catches a row of the table that names another row's field.
+TEST(MonitorLimits, EachParameterSetsAFieldOfItsOwn) {
+  const auto limits_with = [](unsigned changed) {
+    return firmware::monitor_limits<float>([&](auto id) { return decltype(id)::value == changed ? 2.0f : 1.0f; }, 1.0f,
+                                           1.0f);
+  };
+  const auto usual = limits_with(0);
+  for (const firmware::ThresholdRow& row : firmware::kThresholdRows) {
+    const auto changed = limits_with(row.id);
+    firmware::for_each_threshold([&](auto index) {
+      constexpr auto kThreshold = std::get<index()>(firmware::kThresholds<float>);
+      const bool differs = usual.*kThreshold.field != changed.*kThreshold.field;
+      EXPECT_EQ(differs, kThreshold.row.id == row.id) << row.name << " and " << kThreshold.row.name;
+    });
+  }
 }
 
 TEST(MonitorLimits, HaveTheSameMeaningInFixedPoint) {

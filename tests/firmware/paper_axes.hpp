@@ -70,11 +70,8 @@ template <typename Real>
 constexpr firmware::MonitorLimits<Real> initial_monitor_limits(float encoder_resolution, float sample_period_s) {
   const auto initial = [](auto id) {
     float value = 0;
-    firmware::for_each_threshold([&](auto declared, auto index) {
-      using Declaration = decltype(declared);
-      const firmware::ThresholdRow& row = std::get<index()>(Declaration::template kThresholds<float>).row;
+    for (const firmware::ThresholdRow& row : firmware::kThresholdRows)
       if (row.id == decltype(id)::value) value = row.initial;
-    });
     return value;
   };
   return firmware::monitor_limits<Real>(initial, encoder_resolution, sample_period_s);

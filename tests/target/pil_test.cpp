@@ -42,7 +42,7 @@ TYPED_TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
       const auto counts = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(reply.axis[axis].encoder_counts));
       least = std::min(least, counts);
       most = std::max(most, counts);
-      enabled += reply.axis[axis].enable_line;
+      enabled += reply.axis[axis].outputs & 1u;
       EXPECT_EQ((reply.axis[axis].flags >> 8) & 0xFFu, 0u) << "a fault in period " << reply.number;
       EXPECT_EQ(reply.axis[axis].flags & 1u, 0u) << "axis " << axis << " refuses the order of period " << reply.number;
     }
@@ -63,14 +63,38 @@ TYPED_TEST(PilScenario, FaultsOfTheFaultStoryAreNamedAndStopBothAxes) {
     EXPECT_EQ(fault_of(replies[period], 0), static_cast<std::uint32_t>(x)) << period;
     EXPECT_EQ(fault_of(replies[period], 1), static_cast<std::uint32_t>(y)) << period;
     for (const auto& axis : replies[period].axis) {
-      EXPECT_EQ(axis.enable_line, 0u) << period;
+      EXPECT_EQ(axis.outputs, 0u) << period;
       EXPECT_EQ(axis.dac_code, 0) << period;
     }
   };
   expect(590, AxisFault::limit_switch_positive, AxisFault::other_axis_stopped);
   expect(1'290, AxisFault::control_overrun, AxisFault::control_overrun);
   expect(2'090, AxisFault::other_axis_stopped, AxisFault::drive_fault);
-  expect(2'990, AxisFault::emergency_stop, AxisFault::emergency_stop);
+  expect(2'690, AxisFault::emergency_stop, AxisFault::emergency_stop);
+  expect(3'290, AxisFault::other_axis_stopped, AxisFault::amplifier_not_ready);
+}
+
+/// Edges of y's outputs, each with its period, in their order.
+std::vector<std::pair<std::uint32_t, firmware::boards::OutputEdge>> edges_of_y(const Replies& replies) {
+  std::vector<std::pair<std::uint32_t, firmware::boards::OutputEdge>> edges;
+  for (const auto& reply : replies)
+    for (int shift = 28; shift >= 4; shift -= 4)
+      if (const std::uint32_t edge = reply.axis[1].outputs >> shift & 15u; edge != 0)
+        edges.emplace_back(reply.number, static_cast<firmware::boards::OutputEdge>(edge));
+  return edges;
+}
+
+/// The image must show the same words (PilFaults): here is what they are.
+TYPED_TEST(PilScenario, OutputsChangeInTheOrderOfEnablingAndOfEachStop) {
+  using enum firmware::boards::OutputEdge;
+  const auto& story = target_test::fault_story();
+  const auto edges = edges_of_y(run_on_host<TypeParam>(story.periods, story));
+  const firmware::boards::OutputEdge expected[] = {enable_on, brake_released, brake_applied, enable_off};
+  ASSERT_EQ(edges.size(), 20u) << "five starts, five stops";
+  for (std::size_t i = 0; i < edges.size(); ++i) EXPECT_EQ(edges[i].second, expected[i % 4]) << i;
+  for (std::size_t i = 0; i < edges.size(); i += 4) EXPECT_GE(edges[i + 1].first, edges[i].first + 1) << i;
+  EXPECT_EQ(edges[3].first, edges[2].first + 4) << "after a ramp the brake holds before the enable drops";
+  for (const std::size_t drop : {10u, 14u, 18u}) EXPECT_EQ(edges[drop + 1].first, edges[drop].first) << drop;
 }
 
 template <typename Scalar>

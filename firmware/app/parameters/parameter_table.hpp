@@ -1,6 +1,6 @@
 // The table of all parameters. Storage, checks, ids of store and protocol, help, documentation and the schema hash are
 // derived from it: a new parameter is a new row here and its use by name, values.get<"group.name">(). The thresholds of
-// monitors are declared with their faults, firmware/core/supervision/monitored_faults.hpp (ids 144 to 159 and 251).
+// monitors have a table of their own, firmware/core/supervision/monitor_limits.hpp (ids 144 to 159 and 251).
 #pragma once
 
 #include <algorithm>
@@ -201,23 +201,14 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "time for crossing at a reversal"},
 });
 
-inline constexpr std::size_t kThresholds = [] {
-  std::size_t count = 0;
-  for_each_threshold([&count](auto, auto) { ++count; });
-  return count;
-}();
-
-using Rows = std::array<ParameterInfo, kOwnRows.size() + kThresholds>;
+using Rows = std::array<ParameterInfo, kOwnRows.size() + kThresholdRows.size()>;
 
 /// All rows, including the monitors' thresholds, in the order of the ids.
 constexpr Rows with_thresholds() {
   Rows rows{};
   std::size_t place = 0;
   for (const ParameterInfo& row : kOwnRows) rows[place++] = row;
-  for_each_threshold([&](auto declared, auto index) {
-    using Declaration = decltype(declared);
-    rows[place++] = std::get<index()>(Declaration::template kThresholds<float>).row.parameter();
-  });
+  for (const ThresholdRow& row : kThresholdRows) rows[place++] = row.parameter();
   std::ranges::sort(rows, {}, &ParameterInfo::id);
   return rows;
 }

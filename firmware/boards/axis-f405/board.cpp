@@ -62,7 +62,7 @@ static_assert(AXIS_CONTROL_INTERRUPT == kDma2Stream0Interrupt && AXIS_ADC_INTERR
 bool Board::start() {
   Rcc& clock = rcc();
   const bool clocks_reset = reset_clocks(clock);
-  clock.AHB1ENR = clock.AHB1ENR | Rcc::kGpioA | Rcc::kGpioB | Rcc::kGpioC | Rcc::kDma2;
+  clock.AHB1ENR = clock.AHB1ENR | Rcc::kGpioA | Rcc::kGpioB | Rcc::kGpioC | Rcc::kDma1 | Rcc::kDma2;
   connect_pins();
   const bool clocks_run = clocks_reset && start_clocks(clock, power(), flash_interface());
   clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim4 | Rcc::kTim5 | Rcc::kTim13;

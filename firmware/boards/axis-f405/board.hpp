@@ -37,7 +37,8 @@ class BoardAxisHal {
  public:
   struct Wiring {
     hal::stm32f4::Timer& encoder;
-    std::uint32_t probe_trigger;  ///< as for EncoderTimer
+    std::uint32_t probe_trigger;     ///< as for EncoderTimer
+    hal::stm32f4::DmaStream& latch;  ///< likewise
     const hal::stm32f4::TachometerSamples& samples;
     std::uint32_t tachometer_channel;
     Converter::Channel& dac;
@@ -45,7 +46,7 @@ class BoardAxisHal {
     hal::stm32f4::SwitchInputs::Pins switches;
   };
   explicit BoardAxisHal(const Wiring& w)
-      : encoder_(w.encoder, w.probe_trigger),
+      : encoder_(w.encoder, w.probe_trigger, w.latch),
         tachometer_(w.samples, w.tachometer_channel),
         dac_(w.dac),
         lines_(w.lines),
@@ -146,6 +147,7 @@ class Board {
   BoardAxisHal x_{
       {.encoder = hal::stm32f4::timer2(),
        .probe_trigger = 3,
+       .latch = hal::stm32f4::dma1().stream[4],
        .samples = samples_,
        .tachometer_channel = 0,
        .dac = converter_.a(),
@@ -159,6 +161,7 @@ class Board {
   BoardAxisHal y_{
       {.encoder = hal::stm32f4::timer5(),
        .probe_trigger = 2,
+       .latch = hal::stm32f4::dma1().stream[5],
        .samples = samples_,
        .tachometer_channel = 1,
        .dac = converter_.b(),

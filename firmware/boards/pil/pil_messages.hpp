@@ -22,7 +22,7 @@ struct PilAxisRequest {
   std::uint32_t encoder_counts = 0;
   std::int32_t tachometer_code = 0;
   std::uint32_t tachometer_valid = 0;
-  std::uint32_t lines = 0;  ///< bit 0 positive end, 1 negative end, 2 home, 3 drive fault
+  std::uint32_t lines = 0;  ///< bit 0 positive end, 1 negative end, 2 home, 3 drive fault, 4 amplifier not ready
   PilCommand command = PilCommand::none;
   std::uint32_t operand_low = 0;
   std::uint32_t operand_high = 0;
@@ -41,7 +41,7 @@ inline constexpr std::uint32_t kPilEnd = 0xFFFFFFFF;
 struct PilAxisReply {
   std::int32_t dac_code = 0;
   std::uint32_t dac_writes = 0;
-  std::uint32_t enable_line = 0;
+  std::uint32_t outputs = 0;  ///< bit 0 enable, 1 brake released; from bit 4 on ValueAxis::Enable::edges of this period
   std::uint32_t flags =
       0;  ///< bit 0 command refused, 1 saturated, 2 enabled, 3 at rest; bits 8 to 15 AxisFault, 16 to 18 state
   std::array<std::uint32_t, 2> encoder_counts{}, anchor_counts{}, reference_counts{}, reference_fraction{};

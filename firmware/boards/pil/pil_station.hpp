@@ -57,6 +57,8 @@ class PilStation {
     io.tachometer().reading = {request.tachometer_code, request.tachometer_valid != 0};
     io.limits().state = {(request.lines & 1u) != 0, (request.lines & 2u) != 0, (request.lines & 4u) != 0};
     io.drive_enable().faulted = (request.lines & 8u) != 0;
+    io.drive_enable().ready = (request.lines & 16u) == 0;
+    io.drive_enable().edges = 0;
   }
 
   static constexpr bool obey(const PilAxisRequest& request, BoardAxis& axis) {
@@ -95,7 +97,8 @@ class PilStation {
     PilAxisReply reply;
     reply.dac_code = io.dac().code;
     reply.dac_writes = io.dac().writes;
-    reply.enable_line = io.drive_enable().on ? 1 : 0;
+    const ValueAxis::Enable& lines = io.drive_enable();
+    reply.outputs = (lines.on ? 1u : 0u) | (lines.brake_released ? 2u : 0u) | lines.edges << 4;
     reply.flags = (accepted ? 0u : 1u) | (seen.saturated ? 2u : 0u) | (seen.enabled ? 4u : 0u) |
                   (axis.is_at_rest() ? 8u : 0u) | static_cast<std::uint32_t>(axis.fault()) << 8 |
                   static_cast<std::uint32_t>(axis.state()) << 16;

@@ -9,6 +9,8 @@
 
 namespace firmware::boards {
 
+enum class OutputEdge : std::uint8_t { enable_on = 1, enable_off = 2, brake_released = 3, brake_applied = 4 };
+
 class ValueAxis {
  public:
   struct Encoder {
@@ -37,10 +39,18 @@ class ValueAxis {
     bool ready = true;         ///< while enabled
     bool ready_stuck = false;  ///< remains ready without an enable
     bool brake_released = false;
-    void set(bool value) { on = value; }
+    std::uint32_t edges = 0;  ///< of both outputs since it was cleared, in their order: OutputEdge, the last one lowest
+    void set(bool value) {
+      if (value != on) note(value ? OutputEdge::enable_on : OutputEdge::enable_off);
+      on = value;
+    }
     bool is_faulted() const { return faulted; }
     bool is_ready() const { return ready && (on || ready_stuck); }
-    void release_brake(bool released) { brake_released = released; }
+    void release_brake(bool released) {
+      if (released != brake_released) note(released ? OutputEdge::brake_released : OutputEdge::brake_applied);
+      brake_released = released;
+    }
+    void note(OutputEdge edge) { edges = edges << 4 | static_cast<std::uint32_t>(edge); }
   };
   struct Limits {
     hal::LimitState state;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <tuple>
 
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
@@ -37,12 +36,7 @@ class AxisMonitors {
   /// Faults that the axis's hardware reports.
   template <typename Hal>
   constexpr AxisFault watch_parts(Hal& hal) {
-    return first_of([&](auto& watch) {
-      if constexpr (requires { watch.watch_part(hal, limits_); })
-        return watch.watch_part(hal, limits_);
-      else
-        return AxisFault::none;
-    });
+    return hal.dac().is_healthy() ? AxisFault::none : AxisFault::converter_not_as_set;
   }
 
   /// Faults of the sensors, in open and in closed loop.
@@ -71,7 +65,11 @@ class AxisMonitors {
       return AxisFault::overspeed;
     const AxisFault effort = effort_.watch(seen, encoder_velocity_);
     if (effort != AxisFault::none) return effort;
-    return watch_declared(seen);
+    if (!seen.saturated) {  // nearly always
+      saturated_samples_ = 0;
+      return AxisFault::none;
+    }
+    return ++saturated_samples_ > limits_.saturation_samples ? AxisFault::saturation_too_long : AxisFault::none;
   }
 
   template <hal::LimitInputs Switches>
@@ -124,28 +122,8 @@ class AxisMonitors {
     return error <= floor || error <= floor + limits_.following_error_per_velocity * magnitude(reference_velocity);
   }
 
-  /// By the monitors in the faults' declarations; the first that finds a fault.
-  constexpr AxisFault watch_declared(const AxisTelemetry<Scalar>& seen) {
-    return first_of([&](auto& watch) {
-      if constexpr (requires { watch.watch(seen, limits_); })
-        return watch.watch(seen, limits_);
-      else
-        return AxisFault::none;
-    });
-  }
-
-  template <typename Watched>
-  constexpr AxisFault first_of(Watched watched) {
-    AxisFault found = AxisFault::none;
-    const auto until_found = [&](auto&... watch) {
-      static_cast<void>((((found = watched(watch)) != AxisFault::none) || ...));
-    };
-    std::apply(until_found, declared_);
-    return found;
-  }
-
   constexpr void restart_motion() {
-    std::apply([](auto&... watch) { (watch.restart(), ...); }, declared_);
+    saturated_samples_ = 0;
     effort_.restart(encoder_velocity_);
   }
 
@@ -154,11 +132,11 @@ class AxisMonitors {
   Scalar encoder_velocity_{};
   Scalar disagreement_{};
   Scalar high_water_{};
-  Scalar noted_error_{};  ///< up to this an error is neither a fault nor new
+  Scalar noted_error_{};  ///< up to this an error is neither a fault nor new; saves 5 instructions a step
+  std::int32_t saturated_samples_ = 0;
   bool tachometer_fitted_ = true;
   EffortMonitor<Scalar> effort_;
   TravelMonitor<Scalar> travel_;
-  MonitoredFaults::Watches<Scalar> declared_;
 };
 
 }  // namespace firmware

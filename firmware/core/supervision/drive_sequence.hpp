@@ -16,11 +16,20 @@ struct DriveSequenceParameters {
   std::int32_t brake_application = 0;  ///< from the application until the brake holds the axis
 };
 
-enum class DriveStartStep : std::uint8_t {
+/// What the states starting and stopping wait for (firmware/README.md has the diagram).
+enum class DrivePhase : std::uint8_t {
+  none,
+  energising,  ///< enable on, loop open: until the amplifier is ready
+  releasing,   ///< loop closed, brake released: until it is open
+  braking,     ///< at rest, brake applied: until it holds; then the enable drops
+};
+
+enum class DriveStep : std::uint8_t {
   wait,
   close_loop,  ///< the amplifier is ready: close the loop and release the brake
   started,     ///< the axis may move
   late,        ///< the amplifier does not become ready
+  held,        ///< by the brake, if there is one: the enable may drop
 };
 
 /// Always true for an amplifier without this signal.
@@ -42,19 +51,32 @@ class DriveSequence {
     return !parameters_.ready_input && parameters_.amplifier_wait == 0 && release_samples() == 0;
   }
 
-  constexpr void begin() { samples_ = 0; }
+  constexpr void begin_start() { enter(DrivePhase::energising); }
+  /// Of an axis that has stopped; further calls do nothing.
+  constexpr void begin_braking() {
+    if (!is_braking()) enter(DrivePhase::braking);
+  }
+  constexpr void end() { phase_ = DrivePhase::none; }
+  constexpr bool is_braking() const { return phase_ == DrivePhase::braking; }
 
-  /// Once a control period after begin(), until it returns anything but wait; `loop_closed`: it has returned
-  /// close_loop.
-  constexpr DriveStartStep next_of_start(bool is_ready, bool loop_closed) {
+  /// Once a control period while a phase is going on. `is_ready`: the amplifier's contact.
+  constexpr DriveStep next(bool is_ready) {
     ++samples_;
-    if (loop_closed) return samples_ > release_samples() ? DriveStartStep::started : DriveStartStep::wait;
     const bool waited = samples_ > parameters_.amplifier_wait;
-    if (parameters_.ready_input ? is_ready : waited) {
-      begin();
-      return DriveStartStep::close_loop;
+    switch (phase_) {
+      case DrivePhase::energising:
+        if (!(parameters_.ready_input ? is_ready : waited)) return waited ? DriveStep::late : DriveStep::wait;
+        enter(DrivePhase::releasing);
+        return DriveStep::close_loop;
+      case DrivePhase::releasing:
+        return samples_ > release_samples() ? DriveStep::started : DriveStep::wait;
+      case DrivePhase::braking:
+        return !parameters_.brake_fitted || samples_ > parameters_.brake_application ? DriveStep::held
+                                                                                     : DriveStep::wait;
+      case DrivePhase::none:
+        break;
     }
-    return waited ? DriveStartStep::late : DriveStartStep::wait;
+    return DriveStep::wait;
   }
 
   template <hal::DriveEnable Lines>
@@ -62,14 +84,16 @@ class DriveSequence {
     if constexpr (hal::BrakeOutput<Lines>) lines.release_brake(released && parameters_.brake_fitted);
   }
 
-  /// Once a control period after begin(), while a stopped axis is still held by its loop.
-  constexpr bool brake_holds() { return !parameters_.brake_fitted || ++samples_ > parameters_.brake_application; }
-
  private:
+  constexpr void enter(DrivePhase phase) {
+    phase_ = phase;
+    samples_ = 0;
+  }
   constexpr std::int32_t release_samples() const { return parameters_.brake_fitted ? parameters_.brake_release : 0; }
 
   DriveSequenceParameters parameters_{};
-  std::int32_t samples_ = 0;
+  DrivePhase phase_ = DrivePhase::none;
+  std::int32_t samples_ = 0;  ///< in the phase
 };
 
 }  // namespace firmware

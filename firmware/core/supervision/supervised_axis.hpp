@@ -359,17 +359,17 @@ class SupervisedAxis {
     const bool is_held = axis_.telemetry().enabled && !axis_.is_open_loop();
     if (!is_held && standstill_.has_moved(axis_.telemetry().encoder_counts))
       return latch(AxisFault::moved_while_starting) | SupervisorEvent::drop_fault;
-    switch (sequence_.next_of_start(is_ready(hal_.drive_enable()), axis_.telemetry().enabled)) {
-      case DriveStartStep::wait:
-        break;
-      case DriveStartStep::close_loop:
+    switch (sequence_.next(is_ready(hal_.drive_enable()))) {
+      case DriveStep::close_loop:
         axis_.enable();
         release_brake(true);
         break;
-      case DriveStartStep::started:
+      case DriveStep::started:
         return SupervisorEvent::started | SupervisorEvent::started;
-      case DriveStartStep::late:
+      case DriveStep::late:
         return latch(AxisFault::amplifier_not_ready) | SupervisorEvent::drop_fault;
+      default:
+        break;
     }
     return 0;
   }
@@ -422,16 +422,15 @@ class SupervisedAxis {
   }
 
   constexpr bool brake_holds() {
-    if (!is_braking_) sequence_.begin();
-    is_braking_ = true;
+    sequence_.begin_braking();
     release_brake(false);
-    return sequence_.brake_holds();
+    return sequence_.next(true) == DriveStep::held;
   }
 
   constexpr bool has_stopped() {
-    if (sensor_stop_.is_active()) return is_braking_ || sensor_stop_.has_stopped();
-    return is_braking_ ||
-           stop_end_.has_stopped(axis_.is_at_rest(), !axis_.is_open_loop(), axis_.telemetry().encoder_counts);
+    if (sequence_.is_braking()) return true;
+    if (sensor_stop_.is_active()) return sensor_stop_.has_stopped();
+    return stop_end_.has_stopped(axis_.is_at_rest(), !axis_.is_open_loop(), axis_.telemetry().encoder_counts);
   }
 
   constexpr void enter(SupervisorState next) {
@@ -442,9 +441,9 @@ class SupervisedAxis {
       next = latched_.first() == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
     state_ = next;
     homing_.abandon();
-    is_braking_ = false;
+    sequence_.end();
     if (next == SupervisorState::starting) {
-      sequence_.begin();
+      sequence_.begin_start();
       standstill_.begin_start(axis_.telemetry().encoder_counts);
       axis_.energise();
     }
@@ -475,7 +474,6 @@ class SupervisedAxis {
   HomingSequence<Scalar> homing_;
   DriveSequence sequence_;
   AxisIndex index_;
-  bool is_braking_ = false;
   InputFilter drive_fault_, drive_unready_, home_switch_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;

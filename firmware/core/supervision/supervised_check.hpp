@@ -3,6 +3,7 @@
 
 #include "firmware/core/axis_check.hpp"
 #include "firmware/core/control/pole_check.hpp"
+#include "firmware/core/supervision/monitor_check.hpp"
 
 namespace firmware {
 

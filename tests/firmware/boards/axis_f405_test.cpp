@@ -1,8 +1,12 @@
 // The axis board's own code, from start-up to control, on a simulated chip with all parts wired to its pins.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <new>
+#include <vector>
 
 #include "firmware/boards/axis-f405/board.hpp"
 #include "tests/hal/parts/chip.hpp"
@@ -42,7 +46,8 @@ using Board = firmware::boards::Board;
 class AxisBoard : public testing::Test {
  protected:
   AxisBoard() {
-    chip.dma.knows(reinterpret_cast<volatile std::uint16_t*>(&board), sizeof board / 2);
+    for (parts::DmaPart* dma : {&chip.dma1, &chip.dma2})
+      dma->knows(reinterpret_cast<volatile std::uint16_t*>(&board), sizeof board / 2);
     chip.handlers[56] = [this] { control_period(); };
     chip.handlers[18] = [this] { board.recover_conversions(); };
     for (const unsigned pin : {4u, 5u})
@@ -127,6 +132,50 @@ TEST_F(AxisBoard, EachAxisHasItsOwnEncoderTachometerAndOutput) {
   EXPECT_LT(tachometer[1].code, -1000);
   EXPECT_EQ(chip.converter.output_V(0), periods * 10 * 20.0 / 65536.0);
   EXPECT_EQ(chip.converter.output_V(1), (periods * 10 + 1) * 20.0 / 65536.0);
+}
+
+/// Both encoders turn by an edge every 250 ns, and each control interrupt is shut out for up to 9 us. The counter
+/// itself, read in the same interrupts, shows the delays.
+TEST_F(AxisBoard, LatchesPositionsAtTheSamePlaceOfEveryPeriodHoweverLateTheInterruptIs) {
+  constexpr double kEdge_ns = 250.0, kPeriod_ns = 1e6;
+  constexpr std::uint32_t kEdges = 4000;  // in a period
+  start();
+  const double begin_ns = chip.bus.now_ns();
+  double interrupted_ns = 0.0;
+  std::vector<std::array<std::uint32_t, 3>> seen;  // x and y as latched, x's counter
+  chip.handlers[56] = [&] {
+    interrupted_ns = chip.bus.now_ns() - begin_ns;
+    const std::uint32_t counter = chip.timer2.read(0x24);
+    control_period();
+    seen.push_back({counts[0], counts[1], counter});
+  };
+  std::uint32_t edges = 0;
+  const auto turn_until = [&](double until_ns) {
+    for (double now_ns = 0.0; (now_ns = chip.bus.now_ns() - begin_ns) < until_ns;) {
+      for (; kEdge_ns * edges <= now_ns; ++edges) chip.timer2.turn(1), chip.timer5.turn(-1);
+      chip.bus.pass_ns(std::max(1.0, kEdge_ns - std::fmod(now_ns, kEdge_ns)));
+    }
+  };
+  turn_until(1.5 * kPeriod_ns);
+  ASSERT_EQ(seen.size(), 1u);
+  const double first_ns = interrupted_ns;
+  EXPECT_NEAR(first_ns - kEdge_ns * seen[0][0], 13e3, 2e3) << "latched in the middle of the scan of 26 us";
+  for (int period = 1; period < 40; ++period) {
+    turn_until(first_ns + period * kPeriod_ns - 2e3);
+    chip.bus.shut_out(true);
+    turn_until(first_ns + period * kPeriod_ns + period * 2617 % 9000);
+    chip.bus.shut_out(false);
+  }
+  turn_until(first_ns + 39.5 * kPeriod_ns);
+  ASSERT_EQ(seen.size(), 40u);
+  std::uint32_t shortest = kEdges, longest = kEdges;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    EXPECT_EQ(seen[i][0] - seen[i - 1][0], kEdges) << i;
+    EXPECT_EQ(seen[i - 1][1] - seen[i][1], kEdges) << i;
+    shortest = std::min(shortest, seen[i][2] - seen[i - 1][2]);
+    longest = std::max(longest, seen[i][2] - seen[i - 1][2]);
+  }
+  EXPECT_GT(longest - shortest, 30u) << "nothing was shut out";
 }
 
 TEST_F(AxisBoard, EachAxisHasItsOwnLines) {

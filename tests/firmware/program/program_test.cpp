@@ -102,7 +102,8 @@ class ShippedProgram : public testing::Test {
     stand_in = &seen;
     firmware::boards::survival_record() = {};
     reset(0x0E000000);  // power on
-    chip.dma.knows(reinterpret_cast<volatile std::uint16_t*>(&board), sizeof board / 2);
+    for (parts::DmaPart* dma : {&chip.dma1, &chip.dma2})
+      dma->knows(reinterpret_cast<volatile std::uint16_t*>(&board), sizeof board / 2);
     chip.handlers[56] = [this] {
       if (++periods == 1) begin_control();
       control_interrupt();
@@ -243,9 +244,9 @@ TEST_F(ShippedProgram, ItsUsbInterruptReachesTheController) {
 TEST_F(ShippedProgram, ControlGoesOnAfterAnOverrunOfTheConverter) {
   int at_overrun = 0;
   run_ms(100.0, [&] {
-    chip.dma.is_stalled = periods >= 40 && at_overrun == 0;
-    if (chip.dma.is_stalled) chip.pass_ms(1.5), at_overrun = periods;
-    chip.dma.is_stalled = false;
+    chip.dma2.is_stalled = periods >= 40 && at_overrun == 0;
+    if (chip.dma2.is_stalled) chip.pass_ms(1.5), at_overrun = periods;
+    chip.dma2.is_stalled = false;
   });
   EXPECT_GT(at_overrun, 0);
   EXPECT_GT(periods, at_overrun + 30);

@@ -33,11 +33,13 @@ inline double contour_rms_in_process(const sim::DriveDescription& drive, const s
   options.time_unit_s = 1.0 / machine.scale.rate_Hz / (1u << firmware::kPathTimeBits);
   const host::PlannedPath path =
       host::plan_path(host::read_gcode(program, "program", host::PathPoint::Zero(), {}).moves, options);
+  host::PathRecorder recorder(board, machine);
   const host::PathOutcome outcome =
-      host::run_path(board, path, machine, true, true, [](const auto&) { return host::PathWish{}; });
+      host::run_path(board, path, machine, true, recorder, [](const auto&) { return host::PathWish{}; });
+  recorder.stop();
   if (static_cast<firmware::PathEnd>(outcome.state.end) != firmware::PathEnd::completed) return std::nan("");
   double squares = 0.0;
-  const std::vector<double> errors = host::contour_error_um(outcome.capture, path, machine.scale);
+  const std::vector<double> errors = host::contour_error_um(recorder.capture(), path, machine.scale);
   for (const double error_um : errors) squares += error_um * error_um;
   return std::sqrt(squares / static_cast<double>(errors.size()));
 }

@@ -66,23 +66,36 @@ void DmaPart::write(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
+bool DmaPart::takes(const Stream& stream, unsigned channel) const {
+  return !is_stalled && bits(stream.control, 0) != 0 && bits(stream.control, 25, 3) == channel && stream.left != 0;
+}
+
 bool DmaPart::request(unsigned number, unsigned channel, std::uint32_t address, std::uint16_t value) {
+  if (!takes(streams_[number], channel) || streams_[number].periphery != address) return false;
+  return put(number, value, 2);
+}
+
+void DmaPart::request_word(unsigned number, unsigned channel) {
+  if (takes(streams_[number], channel)) put(number, bus_.read_by_dma(streams_[number].periphery), 4);
+}
+
+bool DmaPart::put(unsigned number, std::uint32_t value, unsigned bytes) {
   Stream& stream = streams_[number];
   const std::uint32_t control = stream.control;
-  if (is_stalled || bits(control, 0) == 0 || bits(control, 25, 3) != channel) return false;
-  if (stream.periphery != address || stream.left == 0) return false;
-  const bool half_words = bits(control, 11, 2) == 1 && bits(control, 13, 2) == 1;
-  if (bits(control, 6, 2) != 0 || !half_words) {
+  const bool fits = bits(control, 11, 2) == bytes / 2 && bits(control, 13, 2) == bytes / 2;
+  if (bits(control, 6, 2) != 0 || !fits) {
     bus_.complain("dma: direction or size of the transfer");
     return true;
   }
   const auto known = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(memory_));
   const std::uint32_t place = bits(control, 10) != 0 ? stream.length - stream.left : 0;
-  const std::size_t index = (stream.memory - known) / 2 + place;
-  if (memory_ == nullptr || index >= count_)
+  const std::size_t index = (stream.memory - known) / 2 + place * bytes / 2;
+  if (memory_ == nullptr || index + bytes / 2 > count_) {
     bus_.complain("dma: writes where no buffer is");
-  else
-    memory_[index] = value;
+  } else {
+    memory_[index] = static_cast<std::uint16_t>(value);
+    if (bytes == 4) memory_[index + 1] = static_cast<std::uint16_t>(value >> 16);
+  }
   if (bits(control, 9) != 0) bus_.complain("dma: the peripheral's address moves on");
   if (--stream.left > 0) return true;
   if (bits(control, 8) != 0)

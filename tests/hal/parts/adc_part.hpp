@@ -19,6 +19,10 @@ class DmaPart : public Part {
 
   /// The periphery at `channel` of a stream has a half-word at this address. False when the stream does not take it.
   bool request(unsigned stream, unsigned channel, std::uint32_t address, std::uint16_t value);
+  /// The periphery at `channel` asks for a word from the address that the stream has; a stream that is off takes none.
+  void request_word(unsigned stream, unsigned channel);
+  /// A bus error during a transfer ends the stream (10.3.18).
+  void fail(unsigned stream) { streams_[stream].control &= ~1u; }
   /// Addresses have 32 bits on the chip: a buffer of the test is known by the lower ones of its own.
   void knows(volatile std::uint16_t* memory, std::size_t count) { memory_ = memory, count_ = count; }
 
@@ -26,6 +30,10 @@ class DmaPart : public Part {
   std::function<void(unsigned)> on_complete;  ///< with the stream's number, where its interrupt is enabled
 
  private:
+  struct Stream;
+  bool takes(const Stream& stream, unsigned channel) const;
+  bool put(unsigned number, std::uint32_t value, unsigned bytes);
+
   struct Stream {
     std::uint32_t control = 0, left = 0, periphery = 0, memory = 0, memory1 = 0, fifo = 0x21, length = 0;
   };

@@ -93,6 +93,12 @@ std::uint32_t Bus::read(std::uintptr_t address, std::size_t size) {
   return size == 4 ? word : word >> (offset & 3u) * 8 & 0xFF;
 }
 
+std::uint32_t Bus::read_by_dma(std::uintptr_t address) {
+  const Place& place = at(address);
+  if (place.is_clocked && !place.is_clocked()) return 0;
+  return place.part->read(static_cast<std::uint32_t>(address - place.base));
+}
+
 void Bus::write(std::uintptr_t address, std::size_t size, std::uint32_t value) {
   const Place& place = at(address);
   pass_ns(access_ns_);

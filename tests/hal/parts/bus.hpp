@@ -47,6 +47,9 @@ class Bus {
   std::uint32_t read(std::uintptr_t address, std::size_t size);
   void write(std::uintptr_t address, std::size_t size, std::uint32_t value);
 
+  /// A read by another master of the bus: it takes the processor no time.
+  std::uint32_t read_by_dma(std::uintptr_t address);
+
   double now_ns() const { return now_ns_; }
   /// Time passes while the processor does something else.
   void pass_ns(double time_ns);

@@ -28,7 +28,8 @@ Chip::Chip() {
   attach(0x40020000, 0x28, port_a, kAhb1Enable, kAhb1Reset, 0);
   attach(0x40020400, 0x28, port_b, kAhb1Enable, kAhb1Reset, 1);
   attach(0x40020800, 0x28, port_c, kAhb1Enable, kAhb1Reset, 2);
-  attach(0x40026400, 0xD0, dma, kAhb1Enable, kAhb1Reset, 22);
+  attach(0x40026000, 0xD0, dma1, kAhb1Enable, kAhb1Reset, 21);
+  attach(0x40026400, 0xD0, dma2, kAhb1Enable, kAhb1Reset, 22);
   attach(0x50000000, 0x1000, usb, kAhb2Enable, kAhb2Reset, 7);
   attach(0x40000000, 0x50, timer2, kApb1Enable, kApb1Reset, 0);
   attach(0x40000400, 0x50, timer3, kApb1Enable, kApb1Reset, 1);
@@ -42,7 +43,10 @@ Chip::Chip() {
 
   spi.slave = &converter;
   timer3.on_trigger = [this] { adc.trigger_timer3(); };
-  dma.on_complete = [this](unsigned stream) {
+  timer3.on_request = [this](unsigned channel) {  // 10.3.3, table 42: TIM3_CH1 and CH2 on streams 4 and 5
+    if (channel < 2) dma1.request_word(4 + channel, 5);
+  };
+  dma2.on_complete = [this](unsigned stream) {
     if (stream == 0) interrupt(kDma2Stream0Interrupt);
   };
   adc.on_interrupt = [this] { interrupt(kAdcInterrupt); };
@@ -54,7 +58,11 @@ void Chip::wire_ports() {
   spi.is_wired = [this] {
     return port_a.function(5) == kSpi1 && port_a.function(6) == kSpi1 && port_a.function(7) == kSpi1;
   };
-  port_a.on_change[4] = [this](Drive drive) { converter.select_line(drive != Drive::low); };
+  port_a.on_change[4] = [this](Drive drive) {
+    const bool drives = drive == Drive::low || drive == Drive::high;
+    if (drives && port_a.edge_ns(4) > 20.0) bus.complain("converter: SYNC's edge is slower than a frame's times");
+    converter.select_line(drive != Drive::low);
+  };
   port_b.on_change[0] = [this](Drive drive) { converter.clear_line(drive == Drive::high); };  // pulled down outside
   converter.clear_line(false);
   timer2.is_wired = [this] {
@@ -86,7 +94,7 @@ void Chip::interrupt(unsigned number) {
 }
 
 void Chip::run_at_full_speed() {
-  clock.write(kAhb1Enable, 0x00500007);
+  clock.write(kAhb1Enable, 0x00700007);
   clock.write(kAhb2Enable, 0x00000080);
   clock.write(kApb1Enable, 0x1000088F);
   clock.write(kApb2Enable, 0x00001110);

@@ -46,8 +46,8 @@ class Chip {
   TimerPart timer13{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
   SpiPart spi{bus, [this] { return clock.apb2_Hz(); }};
   ConverterPart converter{bus};
-  DmaPart dma{bus};
-  AdcPart adc{bus, dma, [this] { return clock.apb2_Hz(); }};
+  DmaPart dma1{bus}, dma2{bus};
+  AdcPart adc{bus, dma2, [this] { return clock.apb2_Hz(); }};
   SerialPart serial{bus, [this] { return clock.apb2_Hz(); }, 115200.0};
   IndependentWatchdogPart independent_watchdog{bus};
   WindowWatchdogPart window_watchdog{[this] { return clock.apb1_Hz(); }, clock.enabled(0x40, 11)};

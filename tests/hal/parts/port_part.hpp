@@ -29,6 +29,11 @@ class PortPart : public Part {
   bool level(unsigned pin) const;
   /// The alternate function (0 to 15) that the pin carries, -1 if it carries none.
   int function(unsigned pin) const;
+  /// Longest time that an edge takes with 50 pF: datasheet, I/O AC characteristics.
+  double edge_ns(unsigned pin) const {
+    constexpr double kLongest_ns[4] = {100, 10, 6, 4};
+    return kLongest_ns[bits(speed_, 2 * pin, 2)];
+  }
   bool is_analogue(unsigned pin) const { return bits(mode_, 2 * pin, 2) == 3; }
 
   /// Called with the new drive of an output whenever it changes.

@@ -1,6 +1,8 @@
 #include "tests/hal/parts/timer_part.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace parts {
 
@@ -96,6 +98,12 @@ void TimerPart::write(std::uint32_t offset, std::uint32_t value) {
     case 0x2C:
       reload_ = value & most_;
       break;
+    case 0x34:
+    case 0x38:
+    case 0x3C:
+    case 0x40:
+      if (is_output((offset - 0x34) / 4)) capture_[(offset - 0x34) / 4] = value & most_;  // 18.4.13: else read-only
+      break;
     default:
       break;
   }
@@ -118,14 +126,35 @@ void TimerPart::run(double now_ns) {
   while (ticks > 0) {
     const double to_overflow =
         counter_ > reload_ ? static_cast<double>(most_) - counter_ + 1 : static_cast<double>(reload_) - counter_ + 1;
-    if (ticks < to_overflow) {
-      counter_ += static_cast<std::uint32_t>(ticks);
-      return;
+    const double passed = std::min({ticks, to_overflow, to_next_compare()});
+    ticks -= passed;
+    if (passed < to_overflow) {
+      counter_ += static_cast<std::uint32_t>(passed);
+    } else {
+      const double kept = counted_until_ns_;
+      update();
+      counted_until_ns_ = kept;
     }
-    ticks -= to_overflow;
-    const double kept = counted_until_ns_;
-    update();
-    counted_until_ns_ = kept;
+    compare();
+  }
+}
+
+bool TimerPart::is_output(unsigned channel) const { return bits(mode_[channel / 2], channel % 2 * 8, 2) == 0; }
+
+double TimerPart::to_next_compare() const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (unsigned channel = 0; channel < 4; ++channel)
+    if (is_output(channel) && capture_[channel] > counter_)
+      nearest = std::min(nearest, static_cast<double>(capture_[channel] - counter_));
+  return nearest;
+}
+
+/// 18.3.8: the counter has come to a channel's value; 18.4.4: CCxDE requests DMA.
+void TimerPart::compare() {
+  for (unsigned channel = 0; channel < 4; ++channel) {
+    if (!is_output(channel) || capture_[channel] != counter_) continue;
+    status_ |= 2u << channel;
+    if (bits(interrupts_, 9 + channel) != 0 && on_request) on_request(channel);
   }
 }
 

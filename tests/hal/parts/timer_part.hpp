@@ -1,4 +1,4 @@
-// A general-purpose timer: counter, quadrature decoder, capture, trigger output. RM0090, chapter 18.
+// A general-purpose timer: counter, quadrature decoder, capture, compare, trigger output. RM0090, chapter 18.
 #pragma once
 
 #include <functional>
@@ -33,6 +33,8 @@ class TimerPart : public Part {
 
   /// Called at each trigger output.
   std::function<void()> on_trigger;
+  /// Called at each compare event of a channel, from 0, that requests DMA.
+  std::function<void(unsigned)> on_request;
 
  private:
   void update();
@@ -41,6 +43,9 @@ class TimerPart : public Part {
   void edge(unsigned channel, bool rises, bool other_level);
   double filter_ns(unsigned channel) const;
   bool is_input(unsigned channel) const;
+  bool is_output(unsigned channel) const;
+  double to_next_compare() const;
+  void compare();
 
   Bus& bus_;
   std::uint32_t most_;

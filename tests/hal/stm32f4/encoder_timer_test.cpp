@@ -1,29 +1,42 @@
 // The quadrature counter with an encoder on it.
 #include "hal/stm32f4/encoder_timer.hpp"
 
+#include "hal/stm32f4/control_timer.hpp"
 #include "tests/hal/stm32f4/on_chip.hpp"
 
 namespace {
 
+using hal::stm32f4::ControlTimer;
+using hal::stm32f4::dma1;
 using hal::stm32f4::EncoderTimer;
 using hal::stm32f4::timer2;
+using hal::stm32f4::timer3;
 
 class Encoder : public driver_test::OnRunningChip {
  protected:
   void SetUp() override {
     OnRunningChip::SetUp();
     chip.timer2.is_wired = [] { return true; };
+    chip.dma1.knows(reinterpret_cast<volatile std::uint16_t*>(&encoder), sizeof encoder / 2);
     encoder.start();
+    control.start(84'000'000, 1000);
   }
-  EncoderTimer encoder{timer2(), 3};
+  /// In the next control period.
+  hal::EncoderReading read() {
+    chip.pass_ms(1.0);
+    return encoder.read();
+  }
+
+  EncoderTimer encoder{timer2(), 3, dma1().stream[4]};
+  ControlTimer control{timer3()};
 };
 
 TEST_F(Encoder, CountsEveryEdgeForwardsAndBackwards) {
   chip.timer2.turn(1000);
-  EXPECT_EQ(encoder.read().counts, 1000u);
+  EXPECT_EQ(read().counts, 1000u);
   chip.timer2.turn(-1003);
-  EXPECT_EQ(encoder.read().counts, 0xFFFFFFFDu) << "three below zero, over all 32 bits";
-  EXPECT_TRUE(encoder.read().valid);
+  EXPECT_EQ(read().counts, 0xFFFFFFFDu) << "three below zero, over all 32 bits";
+  EXPECT_TRUE(read().valid);
 }
 
 TEST_F(Encoder, CountsAtTheFullSpeedOfAnEncoder) {
@@ -31,7 +44,21 @@ TEST_F(Encoder, CountsAtTheFullSpeedOfAnEncoder) {
     chip.timer2.turn(1);
     chip.bus.pass_ns(250);
   }
-  EXPECT_EQ(encoder.read().counts, 40u);
+  EXPECT_EQ(read().counts, 40u);
+}
+
+TEST_F(Encoder, StaysTheSameUntilTheNextPeriod) {
+  ASSERT_EQ(read().counts, 0u);
+  chip.timer2.turn(50);
+  EXPECT_EQ(encoder.read().counts, 0u);
+  EXPECT_EQ(read().counts, 50u);
+}
+
+/// The stream has ended, and its memory keeps an old position.
+TEST_F(Encoder, ABusErrorIsAnInvalidReading) {
+  ASSERT_TRUE(read().valid);
+  chip.dma1.fail(4);
+  EXPECT_FALSE(read().valid);
 }
 
 TEST_F(Encoder, TellsTheIndexOnceAndWhetherOneWasMissed) {

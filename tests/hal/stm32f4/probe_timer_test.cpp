@@ -6,6 +6,7 @@
 
 namespace {
 
+using hal::stm32f4::dma1;
 using hal::stm32f4::EncoderTimer;
 using hal::stm32f4::gpio_b;
 using hal::stm32f4::Pin;
@@ -31,7 +32,7 @@ class Probe : public driver_test::OnRunningChip {
   }
 
   ProbeTimer probe{timer4(), Pin(gpio_b(), 6)};
-  EncoderTimer x{timer2(), 3}, y{timer5(), 2};
+  EncoderTimer x{timer2(), 3, dma1().stream[4]}, y{timer5(), 2, dma1().stream[5]};
 };
 
 /// A bouncing contact closes several times; the probe touched at the first closing.

@@ -14,7 +14,7 @@ class Tachometers : public driver_test::OnRunningChip {
     OnRunningChip::SetUp();
     chip.adc.is_wired = [](unsigned channel) { return channel == 10 || channel == 11; };
     chip.adc.input_V = [this](unsigned channel) { return channel == 10 ? x_V : channel == 11 ? y_V : 0.0; };
-    chip.dma.knows(samples.data(), samples.size());
+    chip.dma2.knows(samples.data(), samples.size());
     chip.handlers[kDma2Stream0Interrupt] = [this] {
       scan.acknowledge();
       x.conversions_have_arrived();
@@ -78,9 +78,9 @@ TEST_F(Tachometers, AnOverrunIsCountedAndTheNextPeriodIsWholeAgain) {
   start(1000);
   chip.pass_ms(5.0);
   ASSERT_EQ(scan.overruns(), 0u);
-  chip.dma.is_stalled = true;
+  chip.dma2.is_stalled = true;
   chip.pass_ms(1.0);
-  chip.dma.is_stalled = false;
+  chip.dma2.is_stalled = false;
   const std::size_t before = periods.size();
   x_V = 2.0;
   y_V = 1.0;
@@ -106,9 +106,9 @@ TEST_F(Tachometers, AnOverrunWithinAScanDoesNotExchangeTheAxes) {
   chip.pass_ms(1.0);
   for (int time = 0; time < 8; ++time) {
     chip.bus.pass_ns(50'000 - 3'000 * time);
-    chip.dma.is_stalled = true;
+    chip.dma2.is_stalled = true;
     chip.bus.pass_ns(3'500);
-    chip.dma.is_stalled = false;
+    chip.dma2.is_stalled = false;
     chip.pass_ms(0.5);
     ASSERT_NEAR(x_reading.code, 4 * 0.35 / 3.3 * 4096, 4.0) << time;
   }

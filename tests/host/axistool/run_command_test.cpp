@@ -188,7 +188,7 @@ class ProbingCommand : public RunCommand {
     ASSERT_EQ(run("set-params probe.input=1").exit_code, 0);
   }
   nlohmann::json told(const std::string& program, int exit_code = 0) const {
-    const ProgramRun done = run("run " + written("probe.ngc", program) + " --yes --json -", "2>/dev/null");
+    const ProgramRun done = run("run " + written("probe.ngc", program) + " --yes --json -", "2>>/tmp/bj/err.txt");
     EXPECT_EQ(done.exit_code, exit_code) << program << done.output;
     return nlohmann::json::parse(done.output, nullptr, false);
   }
@@ -222,6 +222,34 @@ TEST_F(ProbingCommand, MeasuresWhereItTouchesAndGoesOnFromThere) {
   EXPECT_THAT(text.output, HasSubstr("line 2: contact at x 20.0000 mm, y"));
 }
 
+/// The parts of a program, and the rests between them, are one record.
+TEST_F(ProbingCommand, IsCapturedFromBeginningToEnd) {
+  fit_probe();
+  const std::string program =
+      written("probe.ngc", "F600\nG38.2 X40\nG91\nG38.4 X-5\nG90\nG0 X0\nG38.3 X-40\nG0 X0\nM2\n");
+  const ProgramRun done = run("run " + program + " --yes --json - --capture " + file("p.csv"), "2>/dev/null");
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  const auto told = nlohmann::json::parse(done.output);
+  const host::Record record = host::read_record(file("p.csv"));
+  // Past each edge by the stopping distance.
+  const double right_mm = told["probes"][0]["position_mm"]["x"], left_mm = told["probes"][2]["position_mm"]["x"];
+  const auto [least, most] = std::minmax_element(record.x.begin(), record.x.end());
+  EXPECT_GT(*most, right_mm);
+  EXPECT_LT(*most, right_mm + 2.0);
+  EXPECT_LT(*least, left_mm);
+  EXPECT_GT(*least, left_mm - 2.0);
+  EXPECT_NEAR(record.x.back(), 0.0, 0.02);
+  EXPECT_EQ(told["lost_rows"], 0);
+  double longest_step_s = 0.0, farthest_step_mm = 0.0;
+  for (std::size_t k = 1; k < record.t_s.size(); ++k) {
+    longest_step_s = std::max(longest_step_s, record.t_s[k] - record.t_s[k - 1]);
+    farthest_step_mm = std::max(farthest_step_mm, std::abs(record.x[k] - record.x[k - 1]));
+  }
+  EXPECT_NEAR(longest_step_s, record.sample_period_s, 1e-6);
+  EXPECT_LT(farthest_step_mm, 0.3) << "250 mm/s at most";
+  EXPECT_LT(told["contour_um"], 12.0) << "each part is compared with its own path";
+}
+
 TEST_F(ProbingCommand, WithoutContactTheStrictFormsFail) {
   fit_probe();
   const ProgramRun none = run("run " + written("none.ngc", "F600\nG38.2 X15\nG0 X0\n") + " --yes");
@@ -252,15 +280,14 @@ TEST_F(ProbingCommand, WhatIsThereAlreadyEndsTheLenientFormsAtOnce) {
 
 TEST_F(ProbingCommand, RefusesWhatCannotBeProbed) {
   fit();
-  const auto refused = [this](const std::string& program, const std::string& cause, const std::string& more = "") {
-    const ProgramRun done = run("run " + written("refused.ngc", program) + " --yes" + more);
+  const auto refused = [this](const std::string& program, const std::string& cause) {
+    const ProgramRun done = run("run " + written("refused.ngc", program) + " --yes");
     EXPECT_EQ(done.exit_code, 8) << done.output;
     EXPECT_THAT(done.output, HasSubstr(cause));
   };
   const std::string program = "F600\nG38.2 X40\n";
   refused(program, "probes in line 2, but no probe is wired");
   ASSERT_EQ(run("set-params probe.input=1").exit_code, 0);
-  refused(program, "--capture cannot make one record", " --capture " + file("p.csv"));
   EXPECT_THAT(run("info").output, HasSubstr("probe        not in contact"));
   refused("F600\nG38.4 X5\n", "not in contact before the one away");
   ASSERT_EQ(told(program)["probes"][0]["found"], true);

@@ -40,7 +40,7 @@ const Story& motion_story() {
 
 const Story& fault_story() {
   using Lines = std::array<std::uint32_t, 2>;
-  static const Story story{3'000,
+  static const Story story{3'300,
                            {{60, 0, PilCommand::enable, 0},         {60, 1, PilCommand::enable, 0},
                             {70, 0, PilCommand::jog, 150},          {70, 1, PilCommand::jog, -200},
                             {600, 0, PilCommand::clear_fault, 0},   {600, 1, PilCommand::clear_fault, 0},
@@ -51,14 +51,18 @@ const Story& fault_story() {
                             {1'410, 0, PilCommand::jog, -250},      {1'410, 1, PilCommand::jog, 250},
                             {2'100, 0, PilCommand::clear_fault, 0}, {2'100, 1, PilCommand::clear_fault, 0},
                             {2'200, 0, PilCommand::enable, 0},      {2'200, 1, PilCommand::enable, 0},
-                            {2'210, 0, PilCommand::jog, 50}},
+                            {2'210, 0, PilCommand::jog, 50},        {2'750, 0, PilCommand::clear_fault, 0},
+                            {2'750, 1, PilCommand::clear_fault, 0}, {2'850, 0, PilCommand::enable, 0},
+                            {2'850, 1, PilCommand::enable, 0},      {2'870, 1, PilCommand::jog, 150}},
                            {{300, Lines{1, 0}, 0},  // x reaches its positive end
                             {500, Lines{0, 0}, 0},
                             {900, Lines{0, 0}, 0, 700},  // a period comes late
                             {1'700, Lines{0, 8}, 0},     // y's amplifier fails
                             {1'800, Lines{0, 0}, 0},
-                            {2'500, Lines{0, 0}, 1},    // emergency stop
-                            {2'600, Lines{0, 0}, 2}}};  // supply low
+                            {2'500, Lines{0, 0}, 1},  // emergency stop
+                            {2'600, Lines{0, 0}, 2},  // supply low
+                            {2'700, Lines{0, 0}, 0},
+                            {3'000, Lines{0, 16}, 0}}};  // y's amplifier is not ready any more
   return story;
 }
 
@@ -85,7 +89,7 @@ firmware::boards::PilRequest Plants::read(std::uint32_t period) {
 
 void Plants::apply(const firmware::boards::PilReply& reply) {
   for (std::size_t i = 0; i < connector_.size(); ++i) {
-    connector_[i]->drive_enable().set(reply.axis[i].enable_line != 0);
+    connector_[i]->drive_enable().set((reply.axis[i].outputs & 1u) != 0);
     connector_[i]->dac().write(reply.axis[i].dac_code);
     plant_[i]->advance(firmware_test::kSamplePeriod_s);
   }

@@ -52,6 +52,9 @@ firmware::AxisParameters<Real> with_all_parts(firmware::AxisParameters<Real> par
   parameters.disturbance_cancellation_on = axis == 1;
   if (axis == 1) parameters.compensation = all_compensation<Real>();
   if (axis == 1) parameters.filters = both_filters<Real>();
+  if (axis == 1)
+    parameters.sequence = {
+        .ready_input = true, .brake_fitted = true, .amplifier_wait = 5, .brake_release = 3, .brake_application = 4};
   return parameters;
 }
 
@@ -100,7 +103,8 @@ struct Story {
 /// Moves long and short, cut moves, jogs up to the velocity limit, reversals, disabling in motion: 10 s on both axes.
 const Story& motion_story();
 
-/// What goes wrong: limit switch, late control, drive fault, emergency stop, low supply; cleared and enabled again.
+/// What goes wrong: limit switch, late control, drive fault, emergency stop, low supply, amplifier not ready; cleared
+/// and enabled again.
 const Story& fault_story();
 
 /// Two simulated drives behind the simulated board's connectors.
