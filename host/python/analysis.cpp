@@ -18,6 +18,7 @@
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/parameters/design_file.hpp"
+#include "host/parameters/drive_limits.hpp"
 #include "host/plan/plan_json.hpp"
 #include "host/plan/posterior.hpp"
 #include "host/python/bindings.hpp"
@@ -141,7 +142,8 @@ host::ControlFilterChoice filters_of(const std::vector<double>& notch, const std
 
 Answer design(const py::object& model, std::optional<double> fc, std::optional<double> zeta, std::optional<double> rw,
               std::optional<double> rwd, std::optional<double> ru, std::optional<double> rx,
-              const std::vector<double>& notch, const std::vector<double>& low_pass) {
+              const std::vector<double>& notch, const std::vector<double>& low_pass, const std::string& limits,
+              double reserve, std::optional<double> velocity) {
   const ModelSource source(model);
   host::DesignOptions options;
   options.tach_variance = rw;
@@ -151,13 +153,20 @@ Answer design(const py::object& model, std::optional<double> fc, std::optional<d
   options.bandwidth_Hz = fc.value_or(options.bandwidth_Hz);
   options.damping = zeta.value_or(options.damping);
   const host::ControlFilterChoice filters = filters_of(notch, low_pass);
+  const host::LimitWishes wishes{.reserve = reserve,
+                                 .as_the_drive_allows = limits == "drive",
+                                 .top_speed_mm_s = velocity,
+                                 .measured_Hz = {},
+                                 .loop_Hz = options.bandwidth_Hz};
   return result_of(py::none(), "design", [&](const auto&) {
     const sim::DriveDescription drive = source.read(host::Bounds::examined_later);
     host::require_plausible(drive, {});
     const host::AxisDesign found = host::design_axis(drive, options);
     nlohmann::json document = host::design_json(found);
     document["filters"] = host::filter_json(filters);
-    return Answer{document.dump(), host::design_toml(drive, found, filters)};
+    const host::DriveLimits found_limits = host::drive_limits(drive, wishes);
+    document["limits"] = host::drive_limits_json(found_limits);
+    return Answer{document.dump(), host::design_toml(drive, found, filters, found_limits.written)};
   });
 }
 

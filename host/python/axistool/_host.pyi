@@ -56,6 +56,9 @@ def design(
     rx: float | None,
     notch: Sequence[float],
     low_pass: Sequence[float],
+    limits: str,
+    reserve: float,
+    velocity: float | None,
 ) -> tuple[str, str]: ...
 
 def open_logs(

@@ -193,17 +193,25 @@ def design(
     rx: float | None = None,
     notch: float | Sequence[float] = (),
     low_pass: float | Sequence[float] = (),
+    limits: str = "usual",
+    reserve: float = 0.3,
+    velocity: float | None = None,
 ) -> Design:
     """Kalman gain and state feedback.
 
     fc (Hz), zeta: natural frequency and damping of the closed loop. rw, rwd, ru, rx: variances of tachometer
     ((rad/s)^2), disturbance (V^2), command (V^2) and position (mm^2). notch, low_pass: frequency in Hz, optionally
-    followed by damping and, for the notch, depth. Raises BadInput for an implausible model or design.
+    followed by damping and, for the notch, depth. limits: of references, "usual" or "drive" (all that the drive allows
+    with this reserve, a share of its effort); velocity: top speed of screw and guides, mm/s. Raises BadInput for an
+    implausible model or design, Refused where friction leaves nothing for acceleration, UsageError for other limits.
 
     >>> design("x.toml", fc=25.0, notch=[110.0, 0.5]).Kc.shape
     (2,)
     """
-    text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch), _numbers(low_pass))
+    if limits not in ("usual", "drive") or not 0.0 <= reserve <= 0.9:
+        raise UsageError('limits is "usual" or "drive", reserve 0 to 0.9')
+    text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch),
+                                    _numbers(low_pass), limits, reserve, velocity)
     answer = json.loads(text)
     poles = np.array([complex(re, im) for re, im in answer["observer_poles"]])
     return Design(np.array(answer["A"]), np.array(answer["B"]), np.array(answer["Kobs"]), np.array(answer["Kc"]), poles,
