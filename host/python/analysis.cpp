@@ -10,6 +10,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
+#include "host/diagnose/prediction_fit.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/identify/effort_timing.hpp"
@@ -33,16 +34,30 @@ namespace py = pybind11;
 namespace {
 
 Answer identify(const py::sequence& given, const py::object& sheet, const std::string& method,
-                const std::string& report) {
+                const std::string& report, const std::string& gain, const py::sequence& loaded,
+                std::optional<double> added_mass, std::optional<double> added_inertia, const std::string& purpose,
+                std::optional<double> window_s) {
   const std::vector<RecordSource> sources = record_sources(given, "record");
   const auto drive_file = sheet.is_none() ? std::nullopt : std::optional<ModelSource>(sheet);
+  const std::vector<RecordSource> heavier = record_sources(loaded, "loaded record");
   return result_of(py::none(), "identify", [&](const auto&) {
     Names warnings;
     const sim::DriveDescription drive =
         drive_file ? drive_file->read_data_sheet() : host::drive_named_by(sources.at(0).read(), warnings);
     const host::Measurements measured = host::MeasurementGate(drive).admit(read_all(sources));
-    host::Identification found = host::identify_drive(measured, drive, host::method_named(method, measured.training()));
+    std::optional<host::Measurements> with_more;
+    std::optional<host::AddedInertia> added;
+    if (!heavier.empty()) {
+      with_more.emplace(host::MeasurementGate(drive).admit(read_all(heavier)));
+      added.emplace(host::AddedInertia{
+          *with_more, added_inertia ? *added_inertia : host::inertia_of_mass(added_mass.value_or(0.0), drive.data)});
+    }
+    host::Identification found = host::identify_with_gain(
+        measured, drive, host::method_named(method, measured.training()), {}, host::gain_source_named(gain), added);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    std::optional<host::PredictionFit> prediction;
+    if (purpose == "prediction")
+      prediction = host::fit_for_prediction(found, measured, window_s.value_or(host::kPredictionWindow_s));
     if (!report.empty()) {
       const host::ComparedModel fit =
           host::compare_with(found.model.name, found.model, read_all(sources), host::kWindow_s, {});
@@ -50,6 +65,8 @@ Answer identify(const py::sequence& given, const py::object& sheet, const std::s
     }
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
+    document["for"] = purpose;
+    if (prediction) document["prediction"] = host::prediction_json(*prediction);
     document["log"] = host::log_faults_json(measured.log());
     return Answer{document.dump(), host::format_model(found.model)};
   });
