@@ -100,7 +100,7 @@ std::vector<sim::DriveDescription> equal_drives(std::vector<sim::DriveDescriptio
 AxisLoop loop_of(const sim::DriveDescription& model, const sim::DriveDescription& controlled, DesignOptions options,
                  double bandwidth_Hz, const ControlFilterChoice& filters, const FinePlant& drive) {
   options.bandwidth_Hz = bandwidth_Hz;
-  AxisLoop loop{model, design_axis(controlled, options), filters, {}};
+  AxisLoop loop{model, design_axis(controlled, options), filters, {}, {}};
   const LoopMargins margins = quick_margins(drive, AxisController(designed_parameters(model, loop.design, filters)));
   if (!margins.is_stable)
     throw Failure(ExitCode::refused,
@@ -169,6 +169,15 @@ void forecast(LoopSet& set, const std::vector<AxisTask>& tasks) {
   }
 }
 
+void limit(LoopSet& set, const std::vector<AxisTask>& tasks, LimitWishes wishes) {
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    AxisLoop& loop = set.axes[i];
+    wishes.loop_Hz = loop.design.used.bandwidth_Hz;
+    wishes.measured_Hz = tasks[i].measured ? lowest_resonance_Hz(*tasks[i].measured->fit) : std::nullopt;
+    loop.limits = drive_limits(loop.model, wishes);
+  }
+}
+
 std::string reason(const std::vector<AxisTask>& tasks, const Found& found, const LoopAim& aim) {
   if (!aim.modulus && !aim.crossover_Hz) return fmt::format("--fc {:g} Hz, as asked", found.loop.bandwidth_Hz);
   if (!found.loop.stopped_by) return "the control rate: pole placement on a rigid drive is good for 0.12 of it";
@@ -183,6 +192,7 @@ nlohmann::json set_json(const LoopSet& set) {
     nlohmann::json axis = design_json(loop.design);
     axis["name"] = loop.model.name;
     axis["filters"] = filter_json(loop.filters);
+    axis["limits"] = drive_limits_json(loop.limits);
     axis["modulus"] = loop.modulus ? nlohmann::json(*loop.modulus) : nlohmann::json(nullptr);
     axes.push_back(axis);
   }
@@ -193,7 +203,8 @@ nlohmann::json set_json(const LoopSet& set) {
 
 }  // namespace
 
-MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim) {
+MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim,
+                             const LimitWishes& limits) {
   check(tasks);
   const std::vector<sim::DriveDescription> models = equal_sensors(tasks);
   const std::vector<sim::DriveDescription> controlled = equal_drives(models, options);
@@ -213,8 +224,10 @@ MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOpt
     machine.own.axes.push_back(
         loop_of(tasks[i].model, tasks[i].model, options, best.loop.bandwidth_Hz, best.filters, drives[i]));
   }
-  forecast(machine.matched, tasks);
-  forecast(machine.own, tasks);
+  for (LoopSet* set : {&machine.matched, &machine.own}) {
+    limit(*set, tasks, limits);
+    forecast(*set, tasks);
+  }
   return machine;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/axes/contour_forecast.hpp"
+#include "host/parameters/drive_limits.hpp"
 #include "host/response/loop_design.hpp"
 
 namespace host {
@@ -21,6 +22,7 @@ struct AxisLoop {
   AxisDesign design;
   ControlFilterChoice filters;
   std::optional<double> modulus;  ///< modulus margin on the measured drive, or on the model
+  DriveLimits limits;             ///< of its references
 };
 
 struct LoopSet {
@@ -35,9 +37,11 @@ struct MachineDesign {
   std::string limited_by;  ///< what limits the bandwidth of the matched loop
 };
 
-/// `options` and `aim` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods, refused
-/// if no common bandwidth meets the requirements or a loop would be unstable, and what design_axis() throws.
-MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim);
+/// `options`, `aim` and `limits` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods,
+/// refused if no common bandwidth meets the requirements or a loop would be unstable, and what design_axis() and
+/// drive_limits() throw.
+MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim,
+                             const LimitWishes& limits = {});
 
 nlohmann::json machine_json(const MachineDesign& machine);
 

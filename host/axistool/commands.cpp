@@ -54,6 +54,7 @@ void add_all_commands(CLI::App& app) {
   add_bode(app);
   add_run(app);
   add_circle(app);
+  add_robustness(app);
   add_pitch(app);
   add_dial(app);
   add_faults(app);

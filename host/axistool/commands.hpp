@@ -45,6 +45,7 @@ void add_excite(CLI::App& app);
 void add_bode(CLI::App& app);
 void add_run(CLI::App& app);
 void add_circle(CLI::App& app);
+void add_robustness(CLI::App& app);
 void add_pitch(CLI::App& app);
 void add_dial(CLI::App& app);
 void add_faults(CLI::App& app);

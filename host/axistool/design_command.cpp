@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
 #include "host/parameters/design_file.hpp"
+#include "host/parameters/drive_limits.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/response/loop_design.hpp"
@@ -31,8 +33,10 @@ struct DesignArguments {
   std::string output, json;
   host::DesignOptions options;
   std::vector<std::string> response;
+  std::string limit_source = "usual";
   std::string report, notch, low_pass, feedforward = "zero-phase";
   std::optional<double> margin, crossover_Hz;
+  host::LimitWishes limits;
   bool own = false;
 };
 
@@ -122,6 +126,22 @@ void print_compensation(const sim::DriveDescription& model) {
   if (!rest.empty()) fmt::print("it does not compensate    {}\n", fmt::join(rest, ", "));
 }
 
+/// Limits of the references, in mm and s.
+void print_limits(const sim::DriveDescription& model, const host::DriveLimits& limits) {
+  const double unit = model.data.kind == sim::DriveKind::linear ? 1e3 : 1.0;
+  const auto text = [&](const host::DriveLimit& limit, const char* of) {
+    return std::isinf(limit.value) ? fmt::format("any {}", of)
+                                   : fmt::format("{:.4g} {} ({})", unit * limit.value, of, limit.by);
+  };
+  fmt::print("limits of axis {:<11}{:.4g} mm/s, {:.4g} mm/s^2, {:.6g} mm/s^3; they need {:.3g} V of {:.3g} V\n",
+             model.name, unit * limits.written.velocity, unit * limits.written.acceleration, unit * limits.written.jerk,
+             limits.command_V, limits.limit_V);
+  fmt::print("the drive allows          {}, {}, {}; {:g} % of its effort stay in reserve\n",
+             text(limits.velocity, "mm/s"), text(limits.acceleration, "mm/s^2"), text(limits.jerk, "mm/s^3"),
+             100.0 * limits.reserve);
+  if (!limits.not_counted.empty()) fmt::print("effort beyond that for    {}\n", fmt::join(limits.not_counted, ", "));
+}
+
 sim::DriveDescription model_of(const std::string& path, const DesignArguments& arguments) {
   sim::DriveDescription model = host::read_model(path, host::Bounds::examined_later);
   host::require_volts(model.data, model.name, "a controller");
@@ -148,8 +168,8 @@ void write_machine(const host::LoopSet& loops, const std::string& folder) {
     throw host::Failure(host::ExitCode::bad_input,
                         fmt::format("{}: cannot make this folder: {}", folder, fault.message()));
   for (std::size_t i = 0; i < files.size(); ++i)
-    host::write_file_atomically(files[i],
-                                host::design_toml(loops.axes[i].model, loops.axes[i].design, loops.axes[i].filters));
+    host::write_file_atomically(files[i], host::design_toml(loops.axes[i].model, loops.axes[i].design,
+                                                            loops.axes[i].filters, loops.axes[i].limits.written));
 }
 
 void print_loops(const char* title, const host::LoopSet& loops) {
@@ -181,6 +201,8 @@ void print_machine(const host::MachineDesign& machine, const DesignArguments& ar
   }
   if (!machine.matched.remaining.empty())
     fmt::print("The remaining error of the matched loop comes from the drives' {}.\n", machine.matched.remaining);
+  for (const host::AxisLoop& loop : (arguments.own ? machine.own : machine.matched).axes)
+    print_limits(loop.model, loop.limits);
   if (arguments.response.empty())
     fmt::print(
         "The margins follow from the models alone and ignore resonances and dead time that these lack. Measure them "
@@ -209,7 +231,7 @@ void run_machine(const DesignArguments& arguments) {
   }
   const host::LoopAim aim = aim_of(arguments);
   host::core_filters(aim.filters, tasks.front().model.data.sample_period_s);  // in their ranges
-  const host::MachineDesign machine = host::design_machine(tasks, arguments.options, aim);
+  const host::MachineDesign machine = host::design_machine(tasks, arguments.options, aim, arguments.limits);
   if (!arguments.output.empty()) write_machine(arguments.own ? machine.own : machine.matched, arguments.output);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::machine_json(machine);
@@ -233,12 +255,17 @@ void run(const DesignArguments& arguments) {
     throw host::Failure(host::ExitCode::refused,
                         "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
                         "finds the highest bandwidth with this modulus margin");
+  host::LimitWishes wishes = arguments.limits;
+  wishes.loop_Hz = design.used.bandwidth_Hz;
+  if (loop && loop->after.fit) wishes.measured_Hz = host::lowest_resonance_Hz(*loop->after.fit);
+  const host::DriveLimits limits = host::drive_limits(model, wishes);
   if (!arguments.output.empty()) {
-    host::write_file_atomically(arguments.output, host::design_toml(model, design, filters));
+    host::write_file_atomically(arguments.output, host::design_toml(model, design, filters, limits.written));
   }
   if (!arguments.json.empty()) {
     nlohmann::json document = host::design_json(design);
     document["filters"] = host::filter_json(filters);
+    document["limits"] = host::drive_limits_json(limits);
     if (loop) {
       document["before"] = host::response_json(loop->before)["margins"];
       document["after"] = host::response_json(loop->after)["margins"];
@@ -249,6 +276,7 @@ void run(const DesignArguments& arguments) {
     host::response_report(loop->after, "axis " + model.name + ", designed", &loop->before).write(arguments.report);
   if (arguments.json == "-") return;
   print_table(model, design);
+  print_limits(model, limits);
   print_compensation(model);
   if (filters.notch || filters.low_pass) fmt::print("filters                   {}\n", filter_text(filters));
   if (loop)
@@ -304,6 +332,19 @@ void add_design(CLI::App& app) {
       "--notch", arguments->notch,
       "HZ[,DAMPING[,DEPTH]] (defaults 0.5, 0.1), or auto: at the measured resonance where it helps most");
   command->add_option("--low-pass", arguments->low_pass, "HZ[,DAMPING] (0.7)");
+  command
+      ->add_option("--limits", arguments->limit_source,
+                   "limits of references to write: usual (250 mm/s, 2000 mm/s^2, 50000 mm/s^3, lowered where the drive "
+                   "needs it), or drive: all the acceleration and jerk that the drive allows")
+      ->check(CLI::IsMember({"usual", "drive"}))
+      ->capture_default_str();
+  command
+      ->add_option("--reserve", arguments->limits.reserve,
+                   "share of the effort that these limits leave to feedback and cutting")
+      ->check(CLI::Range(0.0, 0.9))
+      ->capture_default_str();
+  command->add_option("--velocity", arguments->limits.top_speed_mm_s, "top speed of screw and guides, mm/s (250)")
+      ->check(CLI::PositiveNumber);
   add_output(*command, "--report", arguments->report, "with --response: HTML page of the loop before and after");
   add_json_option(*command, arguments->json);
   command->footer(
@@ -311,12 +352,19 @@ void add_design(CLI::App& app) {
       "  axistool design x.toml -o x-params.toml\n"
       "  axistool design x.toml --fc 40 --zeta 0.8 --json -\n"
       "  axistool design x.toml --response bode.json --margin 0.5 --notch auto -o x-params.toml\n"
+      "  axistool design x.toml --limits drive --reserve 0.4 --velocity 500 -o x-params.toml\n"
       "  axistool design x.toml y.toml --response bode-x.json bode-y.json --margin 0.5 -o machine\n"
       "A larger --rwd makes the disturbance estimate faster and noisier. A larger --fc makes the loop stiffer, until "
       "noise\n"
       "or a resonance limits it; keep it well below the observer's fn. The file also switches on the compensation of\n"
       "those effects of the model that the board supports (cogging, presliding, friction along the travel, backlash,\n"
       "tachometer): after `improve`, design again and set-params once.\n"
+      "The limits keep the command below saturation with --reserve: by inertia, friction, weight, cogging, the "
+      "converter's\n"
+      "range, and the model's current_saturation and voltage_limit (add these effects from the amplifier's data). The\n"
+      "acceleration builds up during one period of the loop, or of a lower resonance. Exit code 8 where friction "
+      "leaves\n"
+      "nothing for acceleration.\n"
       "Several models are the axes of one machine. They get the same closed loop (poles of loop and estimator, "
       "filters,\n"
       "feed-forward), as fast as the slowest axis allows at --margin, because axes with different lags rotate "
@@ -325,6 +373,7 @@ void add_design(CLI::App& app) {
       "axis's own best loop (--own). Exit code 8: the model's values are physically impossible.");
   command->callback([arguments] {
     arguments->options.zero_phase = arguments->feedforward == "zero-phase";
+    arguments->limits.as_the_drive_allows = arguments->limit_source == "drive";
     arguments->models.size() > 1 ? run_machine(*arguments) : run(*arguments);
   });
 }

@@ -7,6 +7,7 @@
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/compare/comparison_report.hpp"
+#include "host/diagnose/prediction_fit.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"
@@ -18,8 +19,10 @@ namespace axistool {
 namespace {
 
 struct IdentifyArguments {
-  std::vector<std::string> records, accepted;
-  std::string output, drive, method, json, report;
+  std::vector<std::string> records, loaded, accepted;
+  std::string output, drive, method, json, report, gain = "sheet", purpose = "control";
+  double window_s = host::kPredictionWindow_s;
+  std::optional<double> added_mass, added_inertia;
   host::MotionOptions options;
 };
 
@@ -52,6 +55,12 @@ void print_table(const host::Identification& found, const std::string& output) {
   if (found.tach_noise_variance) {
     fmt::print("  {:<22} {:>12.4g}  ({})^2, at standstill\n", "tachometer variance", *found.tach_noise_variance, speed);
   }
+  if (found.amplifier) print_row("amplifier gain Ka", "A/V", found.amplifier->gain);
+  if (found.gain_check) {
+    print_row("true gain / assumed", "", found.gain_check->factor);
+    fmt::print("  {:<22} {:>12.6g}  instead of {:.6g} {}/V or {}/A\n", "torque gain by inertia",
+               found.gain_check->found, found.gain_check->assumed, effort, effort);
+  }
   fmt::print("\n  residual {:.3g} % of the {}; condition number {:.3g}; top speed {:.3g} {}\n",
              100.0 * found.relative_error, rotary ? "torque" : "force", found.estimate.condition_number,
              found.excitation.top_speed, speed);
@@ -78,20 +87,43 @@ void run(const IdentifyArguments& arguments) {
   std::vector<std::string> warnings;
   const sim::DriveDescription drive = drive_for(arguments, warnings);
   const host::Measurements measured = host::MeasurementGate(drive, {arguments.accepted}).read(arguments.records);
-  host::Identification found = host::identify_drive(
-      measured, drive, host::method_named(arguments.method, measured.training()), arguments.options);
+  std::optional<host::Measurements> loaded;
+  std::optional<host::AddedInertia> added;
+  if (!arguments.loaded.empty()) {
+    if (arguments.added_mass.has_value() == arguments.added_inertia.has_value())
+      throw host::Failure(host::ExitCode::usage,
+                          "--loaded: say what was added, with either --added-mass or --added-inertia");
+    loaded.emplace(host::MeasurementGate(drive, {arguments.accepted}).read(arguments.loaded));
+    added.emplace(host::AddedInertia{*loaded, arguments.added_inertia
+                                                  ? *arguments.added_inertia
+                                                  : host::inertia_of_mass(*arguments.added_mass, drive.data)});
+  } else if (arguments.added_mass || arguments.added_inertia) {
+    throw host::Failure(host::ExitCode::usage, "--added-mass and --added-inertia need --loaded: records with it");
+  }
+  host::Identification found =
+      host::identify_with_gain(measured, drive, host::method_named(arguments.method, measured.training()),
+                               arguments.options, host::gain_source_named(arguments.gain), added);
   found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+  std::optional<host::PredictionFit> prediction;
+  if (arguments.purpose == "prediction") prediction = host::fit_for_prediction(found, measured, arguments.window_s);
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
   if (!arguments.report.empty()) write_report(arguments, found.model);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
+    document["for"] = arguments.purpose;
+    if (prediction) document["prediction"] = host::prediction_json(*prediction);
     document["log"] = host::log_faults_json(measured.log());
     write_json(document, arguments.json);
   }
   if (arguments.json == "-") return;
   print_log(measured.log());
   print_table(found, arguments.output);
+  if (prediction)
+    fmt::print(
+        "Fitted for prediction over {:g} s: error {:.2f} -> {:.2f} noise floors; torque or force {:.3g} -> {:.3g} %\n",
+        prediction->window_s, prediction->before, prediction->after, 100.0 * prediction->relative_error_before,
+        100.0 * found.relative_error);
 }
 
 }  // namespace
@@ -113,6 +145,27 @@ void add_identify(CLI::App& app) {
       ->check(CLI::IsMember({"unbiased-ls", "ls", "sliding-ls"}));
   command
       ->add_option(
+          "--for", arguments->purpose,
+          "control: least error of torque or force, for feed-forward and controller; prediction: least error of "
+          "the motion that the model predicts over --window")
+      ->check(CLI::IsMember({"control", "prediction"}))
+      ->capture_default_str();
+  command->add_option("--window", arguments->window_s, "length of the predictions of --for prediction, s")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--gain", arguments->gain,
+          "torque per command: sheet; current: Ka from u_V and i_A of the records; inertia: Kt*Ka from --loaded")
+      ->check(CLI::IsMember({"sheet", "current", "inertia"}))
+      ->capture_default_str();
+  add_input(*command, "--loaded", arguments->loaded, "records of the same drive with a known inertia added");
+  command->add_option("--added-mass", arguments->added_mass, "what was added: mass on the table, kg")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--added-inertia", arguments->added_inertia, "the same at the motor, kg m^2 (linear drive: kg)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
           "--deadband", arguments->options.deadband,
           "speed that counts as standstill, rad/s (default 0.5, or a tenth of the record's top speed if that is "
           "less) or m/s (default 0: every sample counts)")
@@ -130,6 +183,12 @@ void add_identify(CLI::App& app) {
       "Examples:\n"
       "  axistool identify steps.csv -o x.toml --drive x-drive.toml\n"
       "  axistool identify a.csv b.csv -o x.toml --drive x-drive.toml --method unbiased-ls --json -\n"
+      "  axistool identify steps.csv --drive x-drive.toml --gain current -o x.toml\n"
+      "  axistool identify steps.csv --drive x-drive.toml --loaded heavy.csv --added-mass 40 --gain inertia -o x.toml\n"
+      "  axistool identify steps.csv --drive x-drive.toml --for prediction -o x.toml\n"
+      "Records with command and current also show the amplifier's gain Ka. A known added inertia shows Kt*Ka: the "
+      "identified\n"
+      "inertia grows by less than was added where the true gain is larger than the data sheet's.\n"
       "Good excitation: open-loop steps in both directions, well above breakaway, of several amplitudes and "
       "durations.\n"
       "Intervals hold for coloured residuals (block sums with Student's t). Exit code 8: the axis did not move "

@@ -50,12 +50,6 @@ class SignalsWait {
   sigset_t signals_{};
 };
 
-/// Line of the program at the present point of the path.
-std::size_t line_at(const host::PlannedPath& path, double elapsed_s) {
-  const auto next = std::ranges::upper_bound(path.curves, elapsed_s, {}, &host::PlannedCurve::time_s);
-  return next == path.curves.begin() ? 0 : (next - 1)->line;
-}
-
 /// One line on a terminal, rewritten.
 class RunLine {
  public:
@@ -69,9 +63,9 @@ class RunLine {
     if (!shows_ || (has_line_ && now - drawn_ < std::chrono::milliseconds(200))) return;
     drawn_ = now;
     has_line_ = true;
-    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line_at(path_, progress.elapsed_s),
-               100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
-               progress.state.permille / 10.0,
+    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ",
+               host::line_at(path_, progress.elapsed_s), 100.0 * progress.elapsed_s / path_.duration_s(),
+               path_.duration_s() - progress.elapsed_s, progress.state.permille / 10.0,
                progress.waits != nullptr
                    ? fmt::format(", WAITS at the stop in line {}: Enter continues", progress.waits->line)
                : is_held ? ", HELD: Ctrl-Z continues"
@@ -95,7 +89,7 @@ class Operator {
     const std::string typed = keys_.take();  // also what was typed before a stop
     for (const char key : typed) override_.press(key);
     const bool is_rapid =
-        std::ranges::binary_search(planned.program.rapid_lines, line_at(planned.path, progress.elapsed_s));
+        std::ranges::binary_search(planned.program.rapid_lines, host::line_at(planned.path, progress.elapsed_s));
     return {.held = held,
             .stop = interrupted(),
             .permille = override_.permille(is_rapid),

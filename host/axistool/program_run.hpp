@@ -14,7 +14,7 @@ namespace axistool {
 
 struct RunArguments : DeviceArguments {
   std::string file, capture;
-  std::vector<std::string> linear, params;
+  std::vector<std::string> linear, params, models;
   double feed_percent = 100.0, rapid_percent = 100.0;
   bool here = false, passes_stops = false;
 };

@@ -7,10 +7,14 @@
 #include <memory>
 #include <optional>
 
+#include "host/axes/path_command.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/program_run.hpp"
 #include "host/device/motion.hpp"
+#include "host/identify/linear_axis.hpp"
+#include "host/known_by_current.hpp"
+#include "host/model/model_file.hpp"
 #include "host/parameters/parameter_file.hpp"
 #include "host/path/path_extents.hpp"
 #include "host/read_file.hpp"
@@ -64,6 +68,45 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
     document["extents_mm"][std::string(firmware::kAxisNames.at(i))] = {extents.least[k], extents.most[k]};
   }
   return document;
+}
+
+/// The drive of each axis: by its model, else by the parameters.
+std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& arguments,
+                                                            const firmware::ParameterValues& values, std::size_t axes) {
+  if (arguments.models.size() > axes)
+    throw Failure(ExitCode::usage, fmt::format("--model: {} models for {} axes; give them in the order of the axes",
+                                               arguments.models.size(), axes));
+  std::vector<std::optional<sim::DriveDescription>> drives;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    if (axis >= arguments.models.size()) {
+      drives.push_back(host::drive_of_parameters(values.axis(axis), firmware::kAxisNames.at(axis)));
+      continue;
+    }
+    drives.push_back(host::read_model(arguments.models[axis]));
+    host::require_volts(drives.back()->data, drives.back()->name, "a board");
+    host::rigid_axis(*drives.back());
+  }
+  return drives;
+}
+
+void say_commands(const std::vector<host::CommandNeed>& needs) {
+  for (const host::CommandNeed& need : needs)
+    fmt::print(
+        "{} needs at most {:.2f} V of {:.2f} V ({:.0f} %): line {}, {:.3f} s, at {:.3f} mm with {:.4g} mm/s and "
+        "{:.4g} mm/s^2\n",
+        need.axis, need.command_V, need.limit_V, 100.0 * need.share(), need.line, need.time_s, need.position_mm,
+        need.speed_mm_s, need.acceleration_mm_s2);
+}
+
+/// Throws if an axis cannot follow.
+void require_command(const std::vector<host::CommandNeed>& needs, const RunArguments& arguments) {
+  const auto most = std::ranges::max_element(needs, {}, &host::CommandNeed::share);
+  if (most == needs.end() || most->share() <= 1.0) return;
+  throw Failure(ExitCode::answer_is_no,
+                fmt::format("{}:{}: {} needs {:.3g} V, but no more than {:.3g} V has an effect at {:.4g} mm/s. Lower "
+                            "{}.limits.acceleration and {}.limits.velocity (`axistool design` finds them), or the feed",
+                            arguments.file, most->line, most->axis, most->command_V, most->limit_V, most->speed_mm_s,
+                            most->axis, most->axis));
 }
 
 bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
@@ -177,9 +220,14 @@ void run(const RunArguments& arguments) {
   if (talks(arguments))
     fmt::print("{}: {} lines, {:.2f} s, {}\n", arguments.file, planned.program.lines, planned.path.duration_s(),
                box_text(extents, axes));
+  const std::vector<host::CommandNeed> needs =
+      host::largest_commands(planned.path, machine.scale, drives_of(arguments, values, axes));
+  document["commands"] = host::commands_json(needs);
+  if (talks(arguments)) say_commands(needs);
   if (arguments.dry_run) {
     document["stopped_because"] = "dry run";
     if (!arguments.json.empty()) write_json(document, arguments.json);
+    require_command(needs, arguments);
     return;
   }
   host::BoardClient& board = *asked;
@@ -217,13 +265,18 @@ void add_run(CLI::App& app) {
   command->add_flag("--here", arguments->here, "for axes that are not homed: take their counts as positions");
   command->add_flag("--pass-stops", arguments->passes_stops, "skip the stops M0 and M1; watch the program");
   add_input(*command, "--params", arguments->params, "with --dry-run: take limits from these files, without a board");
+  add_input(*command, "--model", arguments->models,
+            "models of the axes in their order (axis-model/1): with weight and the amplifier's limits, which the "
+            "board's parameters lack");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
       "Examples:\n"
-      "  axistool run part.ngc --dry-run              # time and extents, against the board's limits\n"
+      "  axistool run part.ngc --dry-run              # time, extents, largest commands\n"
+      "  axistool run part.ngc --dry-run --model x.toml y.toml\n"
       "  axistool run part.ngc --capture part.csv\n"
       "  axistool run part.ngc --feed 120 --rapid 25\n"
+      "A dry run says the largest command that each axis needs, and where. Exit code 1: an axis cannot follow.\n"
       "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G38.2 to G38.5 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30,\n"
       "X Y Z, N, comments; anything else is an error that names the line. The path is exact (G61) unless the program "
       "says G64; G64\n"

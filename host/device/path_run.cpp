@@ -307,8 +307,19 @@ class PlanPlace {
 
   /// `rows`: since the one before, of `row_s` each.
   double advance(const PathPoint& reference, std::uint32_t rows, double row_s) {
-    constexpr std::uint32_t kSteps = 8;  // in the time of a row; twice that time is looked at
-    const auto steps = static_cast<std::uint32_t>(std::min(2.0 * rows, path_.duration_s() / row_s + 1.0) * kSteps);
+    // Where the axes turn round, the nearest point may lie before the turn, by the rounding of the reference: there the
+    // search stays behind, until it looks beyond the turn.
+    constexpr double kLost_mm = 1e-3, kTurn_s = 0.1;
+    const double usual_s = 2.0 * rows * row_s;
+    if (search(reference, usual_s, row_s) > kLost_mm) search(reference, std::max(kTurn_s, usual_s), row_s);
+    return time_s_;
+  }
+
+ private:
+  /// The nearest point within this time, at which the place then is. Returns its distance.
+  double search(const PathPoint& reference, double ahead_s, double row_s) {
+    constexpr double kSteps = 8.0;  // in the time of a row
+    const auto steps = static_cast<std::uint32_t>(std::min(ahead_s, path_.duration_s() + row_s) / row_s * kSteps);
     double best = std::numeric_limits<double>::infinity(), best_s = time_s_;
     for (std::uint32_t i = 0; i <= steps; ++i) {
       const double tried_s = std::min(time_s_ + row_s * i / kSteps, path_.duration_s());
@@ -318,10 +329,9 @@ class PlanPlace {
       best_s = tried_s;
     }
     time_s_ = best_s;
-    return time_s_;
+    return best;
   }
 
- private:
   const PlannedPath& path_;
   double time_s_ = 0.0;
 };

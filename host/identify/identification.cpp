@@ -115,6 +115,18 @@ void warn_of_tachometer(Identification& result, bool corrected) {
                 : "the estimates use the uncorrected record and carry the error"));
 }
 
+void warn_of_amplifier(Identification& result) {
+  if (!result.amplifier) return;
+  const double sheet = result.model.data.amplifier_gain_A_per_V;
+  constexpr double kGainOff = 0.01;
+  const Estimate& gain = result.amplifier->gain;
+  if (!(sheet > 0.0) || std::abs(gain.value - sheet) <= std::max(kGainOff * sheet, gain.half_width())) return;
+  result.warnings.push_back(
+      fmt::format("the current shows an amplifier gain of {:.4g} ± {:.2g} A/V, the data sheet says {:.4g}: inertia and "
+                  "friction are off by {:+.1f} %. --gain current takes the measured one",
+                  gain.value, gain.half_width(), sheet, 100.0 * (sheet / gain.value - 1.0)));
+}
+
 std::string dropped_effects(const sim::DriveDescription& drive) {
   std::string kinds;
   for (const sim::EffectEntry& entry : drive.effects) {
@@ -218,6 +230,7 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   result.method = method;
   result.tachometer = calibrate_tachometer(given, drive.data);
   result.tach_noise_variance = standstill_variance(given, drive.data);
+  result.amplifier = amplifier_gain(given, drive.data.dac_limit_V);
   std::vector<Record> records = given;
   const bool corrected = method == IdentificationMethod::sliding_ls && result.tachometer.has_value();
   if (corrected) apply_calibration(*result.tachometer, records);
@@ -281,6 +294,7 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
   keep_to_the_physics(result.model, result.estimate, result.warnings);
   warn_of_tachometer(result, corrected);
+  warn_of_amplifier(result);
   if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {
     result.warnings.push_back(fmt::format(
         "effects of the drive's file that this fit does not include were dropped: {}; add them again with axistool add",

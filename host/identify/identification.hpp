@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/identify/drive_gains.hpp"
 #include "host/identify/excitation_check.hpp"
 #include "host/identify/tachometer.hpp"
 #include "host/record/measurements.hpp"
@@ -38,6 +39,8 @@ struct Identification {
   ExcitationSummary excitation;
   std::optional<TachometerCalibration> tachometer;
   std::optional<double> tach_noise_variance;  ///< measured at standstill (46)
+  std::optional<AmplifierGain> amplifier;     ///< where all records have command and current
+  std::optional<GainCheck> gain_check;        ///< by identify_with_gain()
   std::vector<std::string> warnings;
 };
 
@@ -52,5 +55,29 @@ struct Identification {
 /// drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});
+
+/// Where a drive's torque per command comes from.
+enum class GainSource {
+  sheet,
+  current,  ///< Ka from command and current of the records
+  inertia,  ///< Kt*Ka from the added inertia
+};
+/// "sheet", "current", "inertia"; throws Failure(usage) for another name.
+GainSource gain_source_named(std::string_view name);
+
+struct AddedInertia {
+  const Measurements& loaded;  ///< the same drive with it
+  double value = 0.0;          ///< at the motor, kg m^2; of a linear drive kg; > 0
+};
+
+/// Inertia at the motor of a mass on the table (kg): m (lead / 1000)^2, or m of a linear drive.
+double inertia_of_mass(double mass_kg, const sim::DataSheet& data);
+
+/// The same with the gain checked or replaced, in the model too. A current's gain changes Ka (of a linear drive N/V);
+/// that of an added inertia Ka too or, where the current gives Ka, Kt. Throws Failure(usage) if the source has no data,
+/// and what check_gain() throws.
+Identification identify_with_gain(const Measurements& measured, const sim::DriveDescription& drive,
+                                  IdentificationMethod method, const MotionOptions& options, GainSource source,
+                                  const std::optional<AddedInertia>& added);
 
 }  // namespace host

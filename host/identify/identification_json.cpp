@@ -38,6 +38,18 @@ nlohmann::json identification_json(const Identification& identification) {
     document["tachometer"][rotary ? "noise_variance_rad2_s2" : "noise_variance_m2_s2"] =
         *identification.tach_noise_variance;
   }
+  if (const auto& amplifier = identification.amplifier)
+    document["amplifier"] = {{"Ka_A_per_V", estimate_json(amplifier->gain)},
+                             {"offset_A", amplifier->offset_A},
+                             {"relative_residual", amplifier->relative_residual},
+                             {"used_A_per_V", identification.model.data.amplifier_gain_A_per_V}};
+  if (const auto& check = identification.gain_check)
+    document["gain_check"] = {{"added", check->added},
+                              {"grown", check->grown},
+                              {"factor", estimate_json(check->factor)},
+                              {rotary ? "J_kg_m2" : "M_kg", estimate_json(check->inertia)},
+                              {"assumed", check->assumed},
+                              {"found", check->found}};
   return document;
 }
 

@@ -1,13 +1,11 @@
 #include "host/parameters/design_file.hpp"
 
-#include "host/parameters/board_parameters.hpp"
-
 namespace host {
 
 std::string design_toml(const sim::DriveDescription& model, const AxisDesign& design,
-                        const ControlFilterChoice& filters) {
+                        const ControlFilterChoice& filters, const ReferenceLimits& limits) {
   core_filters(filters, model.data.sample_period_s);
-  return board_parameters_toml(model, design) + compensation_toml(model) + filter_toml(model, filters);
+  return board_parameters_toml(model, design, limits) + compensation_toml(model) + filter_toml(model, filters);
 }
 
 nlohmann::json filter_json(const ControlFilterChoice& filters) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/identify/axis_design.hpp"
+#include "host/parameters/board_parameters.hpp"
 #include "host/parameters/control_filters.hpp"
 
 namespace host {
@@ -12,7 +13,7 @@ namespace host {
 /// Board parameters, compensations of the model's effects and filters. Throws as core_filters() for a filter out of its
 /// range.
 std::string design_toml(const sim::DriveDescription& model, const AxisDesign& design,
-                        const ControlFilterChoice& filters);
+                        const ControlFilterChoice& filters, const ReferenceLimits& limits);
 
 /// {"notch": {…}, "low_pass": {…}}, null where there is none.
 nlohmann::json filter_json(const ControlFilterChoice& filters);

@@ -315,4 +315,9 @@ PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions&
   return path;
 }
 
+std::size_t line_at(const PlannedPath& path, double time_s) {
+  const auto next = std::ranges::upper_bound(path.curves, time_s, {}, &PlannedCurve::time_s);
+  return next == path.curves.begin() ? 0 : (next - 1)->line;
+}
+
 }  // namespace host

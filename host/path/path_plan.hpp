@@ -55,6 +55,9 @@ struct PlannedPath {
   double duration_s() const { return knots.empty() ? 0.0 : knots.back().time_s; }
 };
 
+/// Line of the program at this time of the path; 0 before the first.
+std::size_t line_at(const PlannedPath& path, double time_s);
+
 struct PathPlanOptions {
   AxisLimits limits;
   double count_mm = 0.001;              ///< the finest encoder step: half of it is the tolerance of an exact path

@@ -10,6 +10,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
+#include "host/diagnose/prediction_fit.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/identify/effort_timing.hpp"
@@ -18,6 +19,7 @@
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/parameters/design_file.hpp"
+#include "host/parameters/drive_limits.hpp"
 #include "host/plan/plan_json.hpp"
 #include "host/plan/posterior.hpp"
 #include "host/python/bindings.hpp"
@@ -32,16 +34,30 @@ namespace py = pybind11;
 namespace {
 
 Answer identify(const py::sequence& given, const py::object& sheet, const std::string& method,
-                const std::string& report) {
+                const std::string& report, const std::string& gain, const py::sequence& loaded,
+                std::optional<double> added_mass, std::optional<double> added_inertia, const std::string& purpose,
+                std::optional<double> window_s) {
   const std::vector<RecordSource> sources = record_sources(given, "record");
   const auto drive_file = sheet.is_none() ? std::nullopt : std::optional<ModelSource>(sheet);
+  const std::vector<RecordSource> heavier = record_sources(loaded, "loaded record");
   return result_of(py::none(), "identify", [&](const auto&) {
     Names warnings;
     const sim::DriveDescription drive =
         drive_file ? drive_file->read_data_sheet() : host::drive_named_by(sources.at(0).read(), warnings);
     const host::Measurements measured = host::MeasurementGate(drive).admit(read_all(sources));
-    host::Identification found = host::identify_drive(measured, drive, host::method_named(method, measured.training()));
+    std::optional<host::Measurements> with_more;
+    std::optional<host::AddedInertia> added;
+    if (!heavier.empty()) {
+      with_more.emplace(host::MeasurementGate(drive).admit(read_all(heavier)));
+      added.emplace(host::AddedInertia{
+          *with_more, added_inertia ? *added_inertia : host::inertia_of_mass(added_mass.value_or(0.0), drive.data)});
+    }
+    host::Identification found = host::identify_with_gain(
+        measured, drive, host::method_named(method, measured.training()), {}, host::gain_source_named(gain), added);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    std::optional<host::PredictionFit> prediction;
+    if (purpose == "prediction")
+      prediction = host::fit_for_prediction(found, measured, window_s.value_or(host::kPredictionWindow_s));
     if (!report.empty()) {
       const host::ComparedModel fit =
           host::compare_with(found.model.name, found.model, read_all(sources), host::kWindow_s, {});
@@ -49,6 +65,8 @@ Answer identify(const py::sequence& given, const py::object& sheet, const std::s
     }
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
+    document["for"] = purpose;
+    if (prediction) document["prediction"] = host::prediction_json(*prediction);
     document["log"] = host::log_faults_json(measured.log());
     return Answer{document.dump(), host::format_model(found.model)};
   });
@@ -141,7 +159,8 @@ host::ControlFilterChoice filters_of(const std::vector<double>& notch, const std
 
 Answer design(const py::object& model, std::optional<double> fc, std::optional<double> zeta, std::optional<double> rw,
               std::optional<double> rwd, std::optional<double> ru, std::optional<double> rx,
-              const std::vector<double>& notch, const std::vector<double>& low_pass) {
+              const std::vector<double>& notch, const std::vector<double>& low_pass, const std::string& limits,
+              double reserve, std::optional<double> velocity) {
   const ModelSource source(model);
   host::DesignOptions options;
   options.tach_variance = rw;
@@ -151,13 +170,20 @@ Answer design(const py::object& model, std::optional<double> fc, std::optional<d
   options.bandwidth_Hz = fc.value_or(options.bandwidth_Hz);
   options.damping = zeta.value_or(options.damping);
   const host::ControlFilterChoice filters = filters_of(notch, low_pass);
+  const host::LimitWishes wishes{.reserve = reserve,
+                                 .as_the_drive_allows = limits == "drive",
+                                 .top_speed_mm_s = velocity,
+                                 .measured_Hz = {},
+                                 .loop_Hz = options.bandwidth_Hz};
   return result_of(py::none(), "design", [&](const auto&) {
     const sim::DriveDescription drive = source.read(host::Bounds::examined_later);
     host::require_plausible(drive, {});
     const host::AxisDesign found = host::design_axis(drive, options);
     nlohmann::json document = host::design_json(found);
     document["filters"] = host::filter_json(filters);
-    return Answer{document.dump(), host::design_toml(drive, found, filters)};
+    const host::DriveLimits found_limits = host::drive_limits(drive, wishes);
+    document["limits"] = host::drive_limits_json(found_limits);
+    return Answer{document.dump(), host::design_toml(drive, found, filters, found_limits.written)};
   });
 }
 

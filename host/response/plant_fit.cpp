@@ -307,4 +307,10 @@ PlantFit fit_plant(const FrequencyResponse& response) {
   return fit;
 }
 
+std::optional<double> lowest_resonance_Hz(const PlantFit& fit) {
+  const auto lowest =
+      std::ranges::min_element(fit.resonances, {}, [](const Resonance& mode) { return mode.f_Hz.value; });
+  return lowest == fit.resonances.end() ? std::nullopt : std::optional(lowest->f_Hz.value);
+}
+
 }  // namespace host

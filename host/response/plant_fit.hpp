@@ -3,6 +3,7 @@
 
 #include <array>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "host/response/frequency_response.hpp"
@@ -38,6 +39,9 @@ struct PlantFit {
 
   Eigen::Vector2cd at(double f_Hz) const;
 };
+
+/// Empty without a resonance.
+std::optional<double> lowest_resonance_Hz(const PlantFit& fit);
 
 /// The same form from a model: inertia, viscous friction, input_delay, current_loop_lag, compliance. Other effects are
 /// left out. Throws as rigid_axis().

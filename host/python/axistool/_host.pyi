@@ -18,7 +18,18 @@ def import_record(
     path: str, map: str, resample_s: float | None, drive: str, unwrap: Sequence[str]
 ) -> tuple[_Columns, dict[str, str]]: ...
 def checked(record: _Record) -> tuple[_Columns, dict[str, str]]: ...
-def identify(records: Sequence[_Record], drive: _Model | None, method: str, report: str) -> tuple[str, str]: ...
+def identify(
+    records: Sequence[_Record],
+    drive: _Model | None,
+    method: str,
+    report: str,
+    gain: str,
+    loaded: Sequence[_Record],
+    added_mass: float | None,
+    added_inertia: float | None,
+    purpose: str,
+    window_s: float | None,
+) -> tuple[str, str]: ...
 def compare(model: _Model, records: Sequence[_Record], window_s: float, report: str) -> str: ...
 def predict(model: _Model, record: _Record, window_s: float) -> tuple[_Columns, dict[str, str]]: ...
 def diagnose(
@@ -56,6 +67,9 @@ def design(
     rx: float | None,
     notch: Sequence[float],
     low_pass: Sequence[float],
+    limits: str,
+    reserve: float,
+    velocity: float | None,
 ) -> tuple[str, str]: ...
 
 def open_logs(

@@ -42,14 +42,27 @@ from .sources import (
 
 
 def identify(
-    records: Records, drive: ModelLike | None = None, method: str | None = None, *, report: PathLike | None = None
+    records: Records,
+    drive: ModelLike | None = None,
+    method: str | None = None,
+    *,
+    report: PathLike | None = None,
+    gain: str = "sheet",
+    loaded: Records | None = None,
+    added_mass: float | None = None,
+    added_inertia: float | None = None,
+    purpose: str = "control",
+    window_s: float | None = None,
 ) -> Identification:
     """Inertia (or mass), viscous and Coulomb friction, with 95 % intervals.
 
     records: one or several of the same drive, with t_s (s), a command u_V (V) or current i_A (A), and a position (x_mm,
     x_m) or speed (w_rad_s, v_m_s). drive: the data sheet; by default the paper's drive that the record names. method:
     "sliding-ls", "unbiased-ls" or "ls"; by default the first with a tachometer, else the second. Raises Refused where
-    the axis hardly moves, BadInput for a bad file, UsageError for an unknown method.
+    the axis hardly moves, BadInput for a bad file, UsageError for an unknown method. gain: torque per command by the data
+    "sheet"; by the "current", where the records have u_V and i_A; by "inertia", where `loaded` are records of the same
+    drive with added_mass (kg, on the table) or added_inertia (kg m^2, at the motor; linear drive: kg). purpose: "control"
+    (least error of the torque or force) or "prediction" (of the motion predicted over window_s; by default 0.1 s).
 
     >>> found = identify("steps.csv", drive="drive.toml", report="identify.html")
     >>> low, high = found.parameters["J_kg_m2"].ci95  # kg m^2
@@ -57,7 +70,12 @@ def identify(
     True
     """
     sheet = None if drive is None else model_source(drive)
-    text, model = _host.identify(record_sources(records), sheet, method or "", path_text(report))
+    if purpose not in ("control", "prediction"):
+        raise UsageError('purpose is "control" or "prediction"')
+    if (loaded is not None) != ((added_mass is None) != (added_inertia is None)):
+        raise UsageError("loaded needs either added_mass or added_inertia, and they need loaded")
+    text, model = _host.identify(record_sources(records), sheet, method or "", path_text(report), gain,
+                                 record_sources(loaded), added_mass, added_inertia, purpose, window_s)
     answer = json.loads(text)
     parameters = {name: Estimate(one["value"], (one["ci95"][0], one["ci95"][1]))
                   for name, one in answer["parameters"].items()}
@@ -193,17 +211,25 @@ def design(
     rx: float | None = None,
     notch: float | Sequence[float] = (),
     low_pass: float | Sequence[float] = (),
+    limits: str = "usual",
+    reserve: float = 0.3,
+    velocity: float | None = None,
 ) -> Design:
     """Kalman gain and state feedback.
 
     fc (Hz), zeta: natural frequency and damping of the closed loop. rw, rwd, ru, rx: variances of tachometer
     ((rad/s)^2), disturbance (V^2), command (V^2) and position (mm^2). notch, low_pass: frequency in Hz, optionally
-    followed by damping and, for the notch, depth. Raises BadInput for an implausible model or design.
+    followed by damping and, for the notch, depth. limits: of references, "usual" or "drive" (all that the drive allows
+    with this reserve, a share of its effort); velocity: top speed of screw and guides, mm/s. Raises BadInput for an
+    implausible model or design, Refused where friction leaves nothing for acceleration, UsageError for other limits.
 
     >>> design("x.toml", fc=25.0, notch=[110.0, 0.5]).Kc.shape
     (2,)
     """
-    text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch), _numbers(low_pass))
+    if limits not in ("usual", "drive") or not 0.0 <= reserve <= 0.9:
+        raise UsageError('limits is "usual" or "drive", reserve 0 to 0.9')
+    text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch),
+                                    _numbers(low_pass), limits, reserve, velocity)
     answer = json.loads(text)
     poles = np.array([complex(re, im) for re, im in answer["observer_poles"]])
     return Design(np.array(answer["A"]), np.array(answer["B"]), np.array(answer["Kobs"]), np.array(answer["Kc"]), poles,

@@ -15,31 +15,46 @@
 
 namespace guest_test {
 
-/// Contour error, um rms, of two axes that are this drive, with the parameters of the files. NaN where it does not end.
-inline double contour_rms_in_process(const sim::DriveDescription& drive, const std::vector<std::string>& parameters,
-                                     const std::string& program) {
-  constexpr std::size_t kAxes = 2;
-  host::BoardClient board(std::make_unique<host::SimulatedLink>(
-      host::SimulatedDeviceOptions{std::vector<host::SimulatedDrive>(kAxes, {drive}), "", 1}));
+struct PathInProcess {
+  host::PathBoard machine;
+  host::PlannedPath path;
+  host::PathOutcome outcome;
+  host::PathCapture capture;
+};
+
+/// Two axes that are these drives, with the parameters of the files.
+inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>& drives,
+                                       const std::vector<std::string>& parameters, const std::string& program) {
+  std::vector<host::SimulatedDrive> simulated;
+  for (const sim::DriveDescription& drive : drives) simulated.push_back({drive});
+  host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{simulated, "", 1}));
   firmware::ParameterValues values = board.read_values();
   for (const std::string& file : parameters) host::put_file(values, file);
   board.write_values(values);
-  host::enable_and_wait(board, (1u << kAxes) - 1u);
-  const host::PathBoard machine = host::path_board(values, kAxes);
-  host::path_start(board, machine.scale, true);
+  host::enable_and_wait(board, static_cast<std::uint8_t>((1u << drives.size()) - 1u));
+  PathInProcess done;
+  done.machine = host::path_board(values, drives.size());
+  host::path_start(board, done.machine.scale, true);
   host::PathPlanOptions options;
-  options.limits = machine.limits;
-  options.count_mm = machine.scale.count_mm.front();
-  options.time_unit_s = 1.0 / machine.scale.rate_Hz / (1u << firmware::kPathTimeBits);
-  const host::PlannedPath path =
-      host::plan_path(host::read_gcode(program, "program", host::PathPoint::Zero(), {}).moves, options);
-  host::PathRecorder recorder(board, machine);
-  const host::PathOutcome outcome =
-      host::run_path(board, path, machine, true, recorder, [](const auto&) { return host::PathWish{}; });
+  options.limits = done.machine.limits;
+  options.count_mm = done.machine.scale.count_mm.front();
+  options.time_unit_s = 1.0 / done.machine.scale.rate_Hz / (1u << firmware::kPathTimeBits);
+  done.path = host::plan_path(host::read_gcode(program, "program", host::PathPoint::Zero(), {}).moves, options);
+  host::PathRecorder recorder(board, done.machine);
+  done.outcome =
+      host::run_path(board, done.path, done.machine, true, recorder, [](const auto&) { return host::PathWish{}; });
   recorder.stop();
-  if (static_cast<firmware::PathEnd>(outcome.state.end) != firmware::PathEnd::completed) return std::nan("");
+  done.capture = recorder.capture();
+  return done;
+}
+
+/// Contour error, um rms, of two axes that are this drive. NaN where it does not end.
+inline double contour_rms_in_process(const sim::DriveDescription& drive, const std::vector<std::string>& parameters,
+                                     const std::string& program) {
+  const PathInProcess done = follow_in_process({drive, drive}, parameters, program);
+  if (static_cast<firmware::PathEnd>(done.outcome.state.end) != firmware::PathEnd::completed) return std::nan("");
   double squares = 0.0;
-  const std::vector<double> errors = host::contour_error_um(recorder.capture(), path, machine.scale);
+  const std::vector<double> errors = host::contour_error_um(done.capture, done.path, done.machine.scale);
   for (const double error_um : errors) squares += error_um * error_um;
   return std::sqrt(squares / static_cast<double>(errors.size()));
 }

@@ -4,44 +4,26 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
 #include "hal/pc/simulated_axis.hpp"
 #include "host/exit_codes.hpp"
 #include "host/hil/contouring.hpp"
-#include "host/identify/paper_drives.hpp"
 #include "host/parameters/axis_parameters.hpp"
+#include "tests/host/axes/unlike_axes.hpp"
 
 namespace {
 
+using axes_test::designed;
+using axes_test::drive;
+using axes_test::effect;
+using axes_test::kCount_um;
+using axes_test::machine;
+using axes_test::Tasks;
 using host::Path;
 
 constexpr std::uint64_t kSeed = 11;
-constexpr double kCount_um = 1e4 / 4096.0;
-
-sim::EffectEntry effect(const char* kind, std::map<std::string, double> parameters) {
-  return {.kind = kind, .parameters = std::move(parameters), .ci95 = {}, .from = {}};
-}
-
-/// The paper's x axis, `times` as heavy and with as much friction, whose amplifier is late by `delay_s`.
-sim::DriveDescription drive(const char* name, double times, double delay_s) {
-  sim::DriveDescription made = *host::paper_drive("x");
-  made.name = name;
-  for (sim::EffectEntry& entry : made.effects)
-    for (auto& [id, value] : entry.parameters)
-      if (!id.starts_with("omega")) value *= times;
-  made.effects.push_back(effect("input_delay", {{"delay", delay_s}}));
-  return made;
-}
-
-using Tasks = std::vector<host::AxisTask>;
-
-const Tasks& machine() {
-  static const Tasks tasks{{drive("x", 1.0, 3e-4), {}}, {drive("y", 2.0, 8e-4), {}}};
-  return tasks;
-}
 
 /// The same with encoders of a tenth of a micrometre, quiet tachometers and viscous friction alone.
 const Tasks& quiet_machine() {
@@ -56,16 +38,6 @@ const Tasks& quiet_machine() {
     return quiet;
   }();
   return tasks;
-}
-
-host::MachineDesign designed(const Tasks& tasks, bool zero_phase) {
-  host::DesignOptions options;
-  options.zero_phase = zero_phase;
-  options.tach_variance = 0.05;
-  options.position_variance = std::pow(kCount_um / 1e3, 2) / 12.0;
-  host::LoopAim aim;
-  aim.modulus = 0.4;
-  return host::design_machine(tasks, options, aim);
 }
 
 std::array<host::MachineAxis, 2> axes_of(const Tasks& tasks, const host::LoopSet& set) {
@@ -104,19 +76,12 @@ double ellipse_um(const host::LoopSet& set, double feed, int turns) {
   const double radius = 35.0;
   const auto run =
       host::run_contour(axes_of(machine(), set), Path::circle(radius, turns), {feed, 2000.0, 50'000.0}, kSeed);
-  Eigen::Matrix<double, 5, 5> gram = Eigen::Matrix<double, 5, 5>::Zero();
-  Eigen::Matrix<double, 5, 1> pull = Eigen::Matrix<double, 5, 1>::Zero();
+  axes_test::EllipseFit fit(radius);
   for (std::size_t k = 0; k < run.t_s.size(); ++k) {
     if (run.t_s[k] < run.begin_s + 0.3 || run.t_s[k] > run.end_s - 0.3) continue;
-    const double x = run.records[0].x[k] + kCount_um / 2e3 - radius, y = run.records[1].x[k] + kCount_um / 2e3;
-    const double at = std::atan2(y, x);
-    Eigen::Matrix<double, 5, 1> row;
-    row << 1.0, std::cos(at), std::sin(at), std::cos(2.0 * at), std::sin(2.0 * at);
-    gram += row * row.transpose();
-    pull += row * 1e3 * (std::hypot(x, y) - radius);
+    fit.add(run.records[0].x[k] + kCount_um / 2e3 - radius, run.records[1].x[k] + kCount_um / 2e3);
   }
-  const Eigen::Matrix<double, 5, 1> found = gram.ldlt().solve(pull);
-  return 2.0 * std::hypot(found(3), found(4));
+  return fit.um();
 }
 
 class Machine : public testing::TestWithParam<bool> {};

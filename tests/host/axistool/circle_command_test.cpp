@@ -8,6 +8,7 @@
 
 #include "host/read_file.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
+#include "tests/host/axistool/simulated_board.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -100,6 +101,37 @@ TEST_F(Circle, SaysWhatARecordLacks) {
   const ProgramRun gap = run_axistool("circle " + folder_.write("gap.csv", line.replace(field, 9, ",")));
   EXPECT_EQ(gap.exit_code, 9) << gap.output;
   EXPECT_THAT(gap.output, HasSubstr("row 2 of y_mm is not a number"));
+}
+
+/// Two axes whose loops differ, on a board: the circles that the command makes show it. The mismatch follows from the
+/// parameters: with the reference velocity alone an axis lags by its own time.
+TEST_F(Circle, ABoardMakesTheCircles) {
+  const std::string model = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
+  const SimulatedBoardProcess board(folder_.path(""), {"--x", model, "--y", model});
+  std::string drive = host::read_file(model);
+  ASSERT_EQ(board.run("set-params host.timeout=5").exit_code, 0);
+  for (const char* axis : {"x", "y"}) {
+    drive.replace(drive.find("name = \"") + 8, 1, axis);
+    const std::string own = folder_.write(std::string(axis) + ".toml", drive),
+                      params = file(std::string(axis) + "-p.toml");
+    ASSERT_EQ(
+        run_axistool("design " + own + " --feedforward velocity --fc " + (*axis == 'x' ? "35" : "20") + " -o " + params)
+            .exit_code,
+        0);
+    ASSERT_EQ(board.run("set-params " + params).exit_code, 0);
+    ASSERT_EQ(board.run(std::string("home ") + axis + " --here").exit_code, 0);
+  }
+  EXPECT_EQ(board.run("circle --yes").exit_code, 2) << "no folder";
+  EXPECT_EQ(board.run("circle --yes --feeds 400 -o " + file("fast")).exit_code, 8);
+  const ProgramRun run = board.run("circle --yes --radius 15 --feeds 30,90 -o " + file("made") + " --json " +
+                                   file("found.json") + " --report " + file("page.html"));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const json found = json::parse(host::read_file(file("found.json")));
+  ASSERT_FALSE(found["causes"].empty()) << found.dump(2);
+  EXPECT_EQ(found["causes"][0]["kind"], "servo_mismatch") << found.dump(2);
+  EXPECT_FALSE(found["iso_230_4"]["H_um"].is_null()) << "both ways";
+  for (const char* name : {"ccw-30", "cw-30", "ccw-90", "cw-90"})
+    EXPECT_GT(host::read_file(file("made/") + name + ".csv").size(), 1000u);
 }
 
 }  // namespace

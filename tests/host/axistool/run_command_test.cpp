@@ -78,6 +78,43 @@ TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
   EXPECT_NEAR(record.x.back(), 0.0, 0.02) << "it ends where it began";
 }
 
+/// The command that the dry run states, against the one that the same program takes on the plant: the model's effort
+/// against the loop's. Both ways, because friction differs by direction.
+TEST_F(RunCommand, ADryRunSaysTheLargestCommandAndWhere) {
+  fit();
+  for (const char* to : {"60", "-60"}) {
+    const std::string line = written("line.ngc", std::string("F12000\nG1 X") + to + "\nM2\n");
+    const ProgramRun dry = run("run " + line + " --dry-run --json -", "2>/dev/null");
+    ASSERT_EQ(dry.exit_code, 0) << dry.output;
+    const auto need = nlohmann::json::parse(dry.output)["commands"][0];
+    EXPECT_EQ(need["axis"], "x");
+    EXPECT_EQ(need["line"], 2);
+    ASSERT_EQ(run("run " + line + " --yes --capture " + file("c.csv")).exit_code, 0);
+    const host::Record record = host::read_record(file("c.csv"));
+    double most_V = 0.0;
+    for (const double u : record.u_V) most_V = std::max(most_V, std::abs(u));
+    std::printf("to %s mm: stated %.3f V, needed %.3f V\n", to, need["command_V"].get<double>(), most_V);
+    EXPECT_NEAR(need["command_V"], most_V, 0.05 * most_V + 0.03);
+    ASSERT_EQ(run("run " + written("back.ngc", "G0 X0\nM2\n") + " --yes").exit_code, 0);
+  }
+}
+
+TEST_F(RunCommand, AProgramThatTheDriveCannotFollowIsNamed) {
+  fit();
+  const std::string line = written("line.ngc", "F1200 G1 X5\nF12000 G1 X60\nM2\n");
+  EXPECT_EQ(run("run " + line + " --dry-run --model " + kModel).exit_code, 0);
+  std::ifstream in(kModel);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string weak = written("weak.toml", text + "\n[[effect]]\nkind = \"current_saturation\"\nlimit_A = 9.0\n");
+  const ProgramRun refused =
+      run("run " + line + " --dry-run --json " + file("dry.json") + " --model " + weak + " " + kModel);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("line.ngc:2: x needs"));
+  std::ifstream told(file("dry.json"));
+  EXPECT_GT(nlohmann::json::parse(told)["commands"][0]["share"], 1.0);
+  EXPECT_EQ(run("run " + line + " --dry-run --model " + kModel + " " + kModel + " " + kModel).exit_code, 2);
+}
+
 TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
   fit();
   const ProgramRun refused = run("run " + written("far.ngc", "F6000 G1 X10\nX95\nM2\n") + " --yes");

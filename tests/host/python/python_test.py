@@ -62,6 +62,12 @@ class SameFigures(unittest.TestCase):
             self.assertEqual(designed.Kobs.shape, (3, 2))
             self.assertIn("kalman", designed.parameters)
 
+            told = command_line("design", model, "--limits", "drive", "--reserve", 0.4, "--velocity", 300)
+            self.assertEqual(axistool.design(found.model, limits="drive", reserve=0.4, velocity=300.0).json, told)
+            self.assertLess(told["limits"]["written"]["velocity"], 300.1)
+            with self.assertRaises(axistool.UsageError):
+                axistool.design(found.model, limits="all")
+
     def test_records_are_cut_shifted_and_opened(self) -> None:
         jog = CASE / "train-jog.csv"
         with tempfile.TemporaryDirectory() as folder:

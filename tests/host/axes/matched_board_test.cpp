@@ -1,0 +1,126 @@
+// Lines and circles of two unlike axes over the board's protocol: nodes streamed to a simulated board that has the
+// parameter files of `design`, encoders captured from it; with each axis' best loop and with one loop for both. The
+// errors are those of the captured points, computed here. Catches parameters that are lost or mixed up between the
+// design and the board, and a path whose axes are not in step.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "host/parameters/design_file.hpp"
+#include "tests/guest/support/path_in_process.hpp"
+#include "tests/host/axes/unlike_axes.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using axes_test::kCount_um;
+
+class MatchedBoard : public testing::TestWithParam<bool> {
+ protected:
+  std::vector<std::string> files_of(const host::LoopSet& set, const std::string& of) const {
+    std::vector<std::string> files;
+    for (const host::AxisLoop& loop : set.axes)
+      files.push_back(folder_.write(of + loop.model.name + ".toml",
+                                    host::design_toml(loop.model, loop.design, loop.filters, loop.limits.written)));
+    return files;
+  }
+
+  static guest_test::PathInProcess follow(const std::vector<std::string>& files, const std::string& program) {
+    guest_test::PathInProcess done =
+        guest_test::follow_in_process({axes_test::machine()[0].model, axes_test::machine()[1].model}, files, program);
+    EXPECT_EQ(static_cast<firmware::PathEnd>(done.outcome.state.end), firmware::PathEnd::completed);
+    EXPECT_EQ(done.capture.lost, 0u);
+    return done;
+  }
+
+  TemporaryFolder folder_;
+  const host::MachineDesign design_ = axes_test::designed(axes_test::machine(), GetParam());
+  const std::vector<std::string> own_ = files_of(design_.own, "own-"), matched_ = files_of(design_.matched, "matched-");
+};
+
+constexpr double kLength_mm = 90.0, kEnds_mm = 1.0;
+
+/// Largest distance from a line, there and back, without its ends, where friction decides. The contour error that `run`
+/// tells must be the same.
+std::array<double, 2> line_errors_um(const guest_test::PathInProcess& done, double angle) {
+  const host::PathCapture& capture = done.capture;
+  const std::vector<double> told_um = host::contour_error_um(capture, done.path, done.machine.scale);
+  double most_told_um = 0.0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  std::array<double, 2> most{};
+  bool is_back = false;
+  for (std::size_t k = 0; k < capture.number.size(); ++k) {
+    const double along = c * capture.reference_mm[0][k] + s * capture.reference_mm[1][k];
+    is_back = is_back || along > kLength_mm - 1e-3;
+    if (along < kEnds_mm || along > kLength_mm - kEnds_mm) continue;
+    const double off = c * (capture.mm[1][k] + kCount_um / 2e3) - s * (capture.mm[0][k] + kCount_um / 2e3);
+    most[is_back ? 1 : 0] = std::max(most[is_back ? 1 : 0], std::abs(1e3 * off));
+    most_told_um = std::max(most_told_um, told_um[k]);
+  }
+  EXPECT_NEAR(most_told_um, std::max(most[0], most[1]), 0.5);
+  return most;
+}
+
+/// Rows at the steady feed, without the 0.2 s in which the loops settle to it.
+std::pair<std::size_t, std::size_t> steady_rows(const host::PathCapture& capture, double feed_mm_s) {
+  std::pair<std::size_t, std::size_t> rows{capture.number.size(), 0};
+  for (std::size_t k = 1; k < capture.number.size(); ++k) {
+    const double x = capture.reference_mm[0][k] - capture.reference_mm[0][k - 1];
+    const double y = capture.reference_mm[1][k] - capture.reference_mm[1][k - 1];
+    if (std::hypot(x, y) < 0.999 * feed_mm_s * capture.row_period_s) continue;
+    rows.first = std::min(rows.first, k + static_cast<std::size_t>(0.2 / capture.row_period_s));
+    rows.second = k;
+  }
+  return rows;
+}
+
+TEST_P(MatchedBoard, KeepsLinesStraight) {
+  for (const double feed : {50.0, 100.0, 200.0})
+    for (const double angle_deg : {15.0, 45.0, 75.0}) {
+      const double angle = angle_deg * std::numbers::pi / 180.0;
+      char program[200];
+      std::snprintf(program, sizeof program, "F%.0f G1 X%.4f Y%.4f\nG1 X0 Y0\nM2\n", 60.0 * feed,
+                    kLength_mm * std::cos(angle), kLength_mm * std::sin(angle));
+      const auto own = line_errors_um(follow(own_, program), angle);
+      const auto matched = line_errors_um(follow(matched_, program), angle);
+      for (const std::size_t way : {0u, 1u}) {
+        std::printf("%s, %3.0f mm/s, %2.0f degrees%s: own %6.2f um, matched %5.2f um\n",
+                    GetParam() ? "zero phase" : "velocity", feed, angle_deg, way == 1 ? " back" : "", own[way],
+                    matched[way]);
+        if (!GetParam() && angle_deg == 45.0) {
+          EXPECT_LE(matched[way], own[way] / 5.0) << feed;
+        }
+        EXPECT_LE(matched[way], own[way] + kCount_um) << feed << ' ' << angle_deg;
+      }
+    }
+}
+
+TEST_P(MatchedBoard, KeepsCirclesRound) {
+  const double radius = 35.0;
+  for (const double feed : {50.0, 170.0})
+    for (const char* word : {"G2", "G3"}) {
+      char program[200];
+      std::snprintf(program, sizeof program, "F%.0f %s X0 Y0 I%.0f J0\n%s X0 Y0 I%.0f J0\nM2\n", 60.0 * feed, word,
+                    radius, word, radius);
+      const auto ellipse_um = [&](const std::vector<std::string>& files) {
+        const host::PathCapture capture = follow(files, program).capture;
+        const auto [first, last] = steady_rows(capture, feed);
+        EXPECT_GT(static_cast<double>(last) - static_cast<double>(first), 1.2 * 220.0 / feed / capture.row_period_s);
+        axes_test::EllipseFit fit(radius);
+        for (std::size_t k = first; k < last; ++k)
+          fit.add(capture.mm[0][k] + kCount_um / 2e3 - radius, capture.mm[1][k] + kCount_um / 2e3);
+        return fit.um();
+      };
+      const double own = ellipse_um(own_), matched = ellipse_um(matched_);
+      std::printf("%s, %3.0f mm/s, %s: ellipse own %6.2f um, matched %5.2f um\n",
+                  GetParam() ? "zero phase" : "velocity", feed, word, own, matched);
+      EXPECT_LE(matched, 0.5) << feed << ' ' << word;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Feedforward, MatchedBoard, testing::Values(true, false),
+                         [](const auto& which) { return which.param ? "ZeroPhase" : "Velocity"; });
+
+}  // namespace
