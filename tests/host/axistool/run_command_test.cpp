@@ -225,7 +225,7 @@ class ProbingCommand : public RunCommand {
     ASSERT_EQ(run("set-params probe.input=1").exit_code, 0);
   }
   nlohmann::json told(const std::string& program, int exit_code = 0) const {
-    const ProgramRun done = run("run " + written("probe.ngc", program) + " --yes --json -", "2>>/tmp/bj/err.txt");
+    const ProgramRun done = run("run " + written("probe.ngc", program) + " --yes --json -", "2>/dev/null");
     EXPECT_EQ(done.exit_code, exit_code) << program << done.output;
     return nlohmann::json::parse(done.output, nullptr, false);
   }
