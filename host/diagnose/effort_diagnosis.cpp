@@ -265,10 +265,7 @@ void take_back_denied_connection(Diagnosis& diagnosis) {
   const EffortScreen* screen = diagnosis.screen.get();
   if (!diagnosis.by_effort || screen == nullptr || screen->rows.steady) return;
   if (std::ranges::none_of(screen->best().kinds, is_connection)) return;
-  sim::DriveDescription rest = diagnosis.best;
-  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return is_connection(entry.kind); });
-  const double ratio = diagnosis.best_error.validate.combined / diagnosis.rows.error_of(rest).validate.combined;
-  if (ratio * ratio <= 1.0 - kWorthNaming) return;
+  if (diagnosis.best_error.validate.combined <= diagnosis.base_error.validate.combined / kHardly) return;
   DiagnosisVerdict& verdict = diagnosis.verdict;
   verdict.status = Status::unexplained;
   verdict.effects.clear();

@@ -34,9 +34,8 @@ std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& m
 /// Result of the forward prediction for the chosen effects, as a sentence; may be empty.
 std::string said_by_the_motion(const Diagnosis& diagnosis);
 
-/// Withdraws a gap or spring that the force balance names unless it takes kWorthNaming of the squared error of the
-/// prediction from the command on held-back records, because nothing between motor and table was measured and a
-/// reversal, which shows it, is not in the balance. The verdict says so.
+/// Withdraws a gap or spring that the force balance names if it increases the error of the prediction from the command
+/// on held-back records, because nothing between motor and table was measured. The verdict says so.
 void take_back_denied_connection(Diagnosis& diagnosis);
 
 /// If unexplained: names the coordinate that carries most of the residual, and the share that a free curve explains.
