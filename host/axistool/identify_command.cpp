@@ -111,8 +111,10 @@ void run(const IdentifyArguments& arguments) {
   if (!arguments.json.empty()) {
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
-    document["for"] = arguments.purpose;
-    if (prediction) document["prediction"] = host::prediction_json(*prediction);
+    if (prediction) {
+      document["for"] = arguments.purpose;
+      document["prediction"] = host::prediction_json(*prediction);
+    }
     document["log"] = host::log_faults_json(measured.log());
     write_json(document, arguments.json);
   }

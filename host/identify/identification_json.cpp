@@ -16,6 +16,7 @@ nlohmann::json identification_json(const Identification& identification) {
   if (estimate.negative) parameters[rotary ? "negative_Nm" : "negative_N"] = estimate_json(*estimate.negative);
   nlohmann::json document = {
       {"format", "axis-identification/1"},
+      {"for", "control"},
       {"method", method_name(identification.method)},
       {"relative_error", identification.relative_error},
       {"motion_from", identification.by_speed ? "speed" : "position"},

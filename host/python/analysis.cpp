@@ -65,8 +65,10 @@ Answer identify(const py::sequence& given, const py::object& sheet, const std::s
     }
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
-    document["for"] = purpose;
-    if (prediction) document["prediction"] = host::prediction_json(*prediction);
+    if (prediction) {
+      document["for"] = purpose;
+      document["prediction"] = host::prediction_json(*prediction);
+    }
     document["log"] = host::log_faults_json(measured.log());
     return Answer{document.dump(), host::format_model(found.model)};
   });
