@@ -11,6 +11,7 @@ from pathlib import Path
 
 try:
     from selenium import webdriver
+    from selenium.common.exceptions import StaleElementReferenceException
     from selenium.webdriver.common.by import By
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.support.ui import WebDriverWait
@@ -57,9 +58,14 @@ class ServedPage:
         return self.browser.execute_script("return [...document.querySelectorAll(arguments[0])].map((one) => one.innerText.trim())", selector)
 
     def click(self, selector: str) -> None:
-        element = self.until(selector)
-        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
-        element.click()
+        """Once more if the page has drawn the element anew since it was found: results come at any time."""
+        def clicked(_) -> bool:
+            element = self.until(selector)
+            self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
+            element.click()
+            return True
+
+        WebDriverWait(self.browser, PATIENCE_S, 0.1, (StaleElementReferenceException,)).until(clicked, selector)
 
     def messages(self) -> list[str]:
         """What the page wrote to the console since the last call."""
