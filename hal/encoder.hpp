@@ -20,10 +20,9 @@ struct IndexReading {
   bool missed = false;  ///< more than one occurred; `counts` belongs to the last
 };
 
-/// Contract: `read()` returns at once the counter at one instant of the control period, best at an instant that hardware
-/// chooses. Positive counts are positive travel of the axis.
-/// A reading never goes back to an earlier value by itself (no reset at the index pulse). An error is an invalid
-/// reading; it lasts as long as its cause.
+/// Contract: `read()` returns at once the counter at one instant of the control period, best at an instant that
+/// hardware chooses. Positive counts are positive travel of the axis. A reading never goes back to an earlier value by
+/// itself (no reset at the index pulse). An error is an invalid reading; it lasts as long as its cause.
 template <typename T>
 concept Encoder = requires(T& encoder) {
   { encoder.read() } -> std::same_as<EncoderReading>;
