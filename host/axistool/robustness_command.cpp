@@ -27,14 +27,12 @@ void run(const RobustnessArguments& arguments) {
                         fmt::format("--params: {} files for {} axes; give one of each axis, in the order of the models",
                                     arguments.params.size(), arguments.models.size()));
   host::RobustnessMachine machine;
-  std::string names;
-  for (std::size_t i = 0; i < machine.size(); ++i) {
+  for (std::size_t i = 0; i < machine.size(); ++i)
     machine[i] = host::robustness_axis(host::read_model(arguments.models[i]),
                                        arguments.params.empty() ? "" : arguments.params[i]);
-    names += (names.empty() ? "" : ", ") + arguments.models[i];
-  }
   const host::Robustness found = host::find_robustness(machine, arguments.options);
-  if (!arguments.report.empty()) host::robustness_report(found, names).write(arguments.report);
+  if (!arguments.report.empty())
+    host::robustness_report(found, fmt::format("{}", fmt::join(arguments.models, ", "))).write(arguments.report);
   if (!arguments.json.empty()) write_json(host::robustness_json(found), arguments.json);
   if (arguments.json != "-") fmt::print("{}", host::robustness_text(found, host::terminal_of(stdout)));
 }

@@ -177,12 +177,7 @@ std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis) {
   Kinds kinds = verdict.effects;
   for (const Kinds& group : verdict.alternatives) {
     if (std::ranges::any_of(group, [&](const std::string& kind) { return holds(kinds, kind); })) continue;
-    double sum = 0.0;
-    for (const JudgedCandidate& candidate : diagnosis.candidates)
-      if (holds_all(candidate.kinds, kinds) &&
-          std::ranges::any_of(group, [&](const std::string& kind) { return holds(candidate.kinds, kind); }))
-        sum += candidate.probability;
-    if (sum >= kClaimed) kinds.push_back(group.front());
+    if (probability_of_any(diagnosis, group, kinds) >= kClaimed) kinds.push_back(group.front());
   }
   return candidate_of(diagnosis, kinds) != nullptr ? kinds : verdict.effects;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
+#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/probability.hpp"
 #include "sim/catalogue.hpp"
 
@@ -63,7 +64,7 @@ std::size_t parameters_of(const JudgedCandidate& candidate) {
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
   constexpr double kNear = 1e-3;
-  constexpr double kStandsForZero = 0.0005;  // of the upper end; a damping of 0.001 is none, which no drive has
+  constexpr double kStandsForZero = 0.0005;  // of the upper end; no drive has a damping as low as 0.001
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
@@ -83,17 +84,19 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
 }
 
 std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
-                                                 const std::vector<std::string>& kinds, const RecordScales& scales) {
+                                                 const std::vector<std::string>& kinds, const RecordSet& training) {
   constexpr double kFarthest = 10.0;  // travels: over one travel the effect changes by a tenth, as kWorthNaming asks
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
     if (entry == nullptr) continue;
-    for (const auto& [id, value] : entry->parameters)
-      if (const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
-          info != nullptr && info->scale == sim::Scale::position &&
-          std::abs(value - scales.middle) > kFarthest * scales.travel)
+    for (const auto& [id, value] : entry->parameters) {
+      const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
+      if (info == nullptr || info->scale != sim::Scale::position) continue;
+      const RecordScales scales = scales_of(training);
+      if (std::abs(value - scales.middle) > kFarthest * scales.travel)
         found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
+    }
   }
   return found;
 }

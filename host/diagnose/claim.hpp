@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/diagnosis.hpp"
 
 namespace host {
@@ -48,7 +47,7 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
 
 /// Positions so far from the records' travel that the effect hardly changes over it and stands in for a constant.
 std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
-                                                 const std::vector<std::string>& kinds, const RecordScales& scales);
+                                                 const std::vector<std::string>& kinds, const RecordSet& training);
 
 /// Seconds of validation data for which an improvement in all windows is significant for the best of `tried`
 /// candidates.

@@ -40,7 +40,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
       probability_of_luck(before, after, tried, windows_in(kLuckBlock_s, validation), validation.common_square);
   judged.model = candidate.model;
   judged.on_bound = parameters_on_bound(candidate.model, candidate.kinds);
-  std::ranges::move(parameters_out_of_reach(candidate.model, candidate.kinds, scales_of(training)),
+  std::ranges::move(parameters_out_of_reach(candidate.model, candidate.kinds, training),
                     std::back_inserter(judged.on_bound));
   return judged;
 }

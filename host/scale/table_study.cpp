@@ -195,8 +195,8 @@ class Search {
     return first;
   }
 
-  /// What the last term takes of x2 - x, um RMS; of a wave all of it, also what is lost in the means of the rows. Less
-  /// than the sensors' steps make by themselves is none of the machine's: two grids beat against each other.
+  /// RMS that the last term takes of x2 - x, um; for a wave, the part lost in the means of the rows included. A smaller
+  /// one than the sensors' own steps is not an effect of the machine: two grids beat against each other.
   double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
     if (terms.back().kind == "encoder_cyclic_error") return fit.factors.tail(2).norm() / std::numbers::sqrt2;
     const MatrixXd own = terms.back().columns(rows_);
