@@ -6,6 +6,8 @@ import { fileAddress, get, post } from "./exchange.js";
 export let jobs = [];
 const listeners = [];
 const isOpen = (job) => job.state === "queued" || job.state === "running";
+/** @type {Set<number>|undefined} jobs that had ended at the last look; a short one is never seen open */
+let endedBefore;
 let timer = 0;
 
 /**
@@ -18,7 +20,6 @@ export function onJobs(listener) {
 
 export async function lookAtJobs() {
   clearTimeout(timer);
-  const before = jobs.filter(isOpen).map((job) => job.id);
   try {
     jobs = (await get("/api/jobs")).jobs;
   } catch (error) {
@@ -26,7 +27,9 @@ export async function lookAtJobs() {
     timer = setTimeout(lookAtJobs, 5000);
     return;
   }
-  const ended = jobs.filter((job) => before.includes(job.id) && !isOpen(job));
+  const known = endedBefore ?? new Set(jobs.map((job) => job.id));
+  const ended = jobs.filter((job) => !isOpen(job) && !known.has(job.id));
+  endedBefore = new Set(jobs.filter((job) => !isOpen(job)).map((job) => job.id));
   listeners.forEach((listener) => listener(ended));
   if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, 500);
 }
