@@ -1,4 +1,4 @@
-// Lines of two unlike axes over the board's protocol: nodes streamed to a simulated board that has the
+// Lines and circles of two unlike axes over the board's protocol: nodes streamed to a simulated board that has the
 // parameter files of `design`, encoders captured from it; with each axis' best loop and with one loop for both. The
 // errors are those of the captured points, computed here. Catches parameters that are lost or mixed up between the
 // design and the board, and a path whose axes are not in step.
@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "host/parameters/design_file.hpp"
 #include "tests/guest/support/path_in_process.hpp"
@@ -63,6 +65,26 @@ std::array<double, 2> line_errors_um(const guest_test::PathInProcess& done, doub
   return most;
 }
 
+/// The rows of the last four whole turns at the feed: the ellipse of a part of a turn would count one axis' reversals
+/// more often than the other's. All of them must be at the feed.
+std::pair<std::size_t, std::size_t> four_turns(const host::PathCapture& capture, double radius, double feed_mm_s) {
+  const auto is_at_feed = [&](std::size_t k) {
+    const double x = capture.reference_mm[0][k] - capture.reference_mm[0][k - 1];
+    const double y = capture.reference_mm[1][k] - capture.reference_mm[1][k - 1];
+    return std::hypot(x, y) > 0.998 * feed_mm_s * capture.row_period_s;
+  };
+  std::size_t last = capture.number.size() - 1;
+  while (last > 0 && !is_at_feed(last)) --last;
+  const auto rows = static_cast<std::size_t>(8.0 * std::numbers::pi * radius / feed_mm_s / capture.row_period_s);
+  if (last < rows) {
+    ADD_FAILURE() << "four turns at " << feed_mm_s << " mm/s take more than " << last << " rows";
+    return {1, 1};
+  }
+  for (std::size_t k = last - rows; k < last; ++k)
+    if (!is_at_feed(k)) ADD_FAILURE() << "slower than " << feed_mm_s << " mm/s in row " << k;
+  return {last - rows, last};
+}
+
 TEST_P(MatchedBoard, KeepsLinesStraight) {
   for (const double feed : {50.0, 100.0, 200.0})
     for (const double angle_deg : {15.0, 45.0, 75.0}) {
@@ -81,6 +103,32 @@ TEST_P(MatchedBoard, KeepsLinesStraight) {
         }
         EXPECT_LE(matched[way], own[way] + kCount_um) << feed << ' ' << angle_deg;
       }
+    }
+}
+
+TEST_P(MatchedBoard, KeepsCirclesRound) {
+  const double radius = 35.0;
+  // At 160 mm/s y reaches its limit of acceleration where it turns back: a path slows down there, and the circle's
+  // radius follows the feed.
+  for (const double feed : {50.0, 150.0})
+    for (const char* word : {"G2", "G3"}) {
+      char turn[100];
+      std::snprintf(turn, sizeof turn, "%s X0 Y0 I%.0f J0\n", word, radius);
+      std::string program = "F" + std::to_string(static_cast<int>(60.0 * feed)) + "\n";
+      for (int turns = 0; turns < 6; ++turns) program += turn;
+      program += "M2\n";
+      const auto ellipse_um = [&](const std::vector<std::string>& files) {
+        const host::PathCapture capture = follow(files, program).capture;
+        const auto [first, last] = four_turns(capture, radius, feed);
+        axes_test::EllipseFit fit(radius);
+        for (std::size_t k = first; k < last; ++k)
+          fit.add(capture.mm[0][k] + kCount_um / 2e3 - radius, capture.mm[1][k] + kCount_um / 2e3);
+        return fit.um();
+      };
+      const double own = ellipse_um(own_), matched = ellipse_um(matched_);
+      std::printf("%s, %3.0f mm/s, %s: ellipse own %6.2f um, matched %5.2f um\n",
+                  GetParam() ? "zero phase" : "velocity", feed, word, own, matched);
+      EXPECT_LE(matched, 0.5) << feed << ' ' << word;
     }
 }
 
