@@ -50,7 +50,8 @@ class Search {
     return true;
   }
 
-  /// The same with the form refined, from each start of its kind: the one with the smallest training residual.
+  /// The same with the form refined, from each start of its kind: the one with the smallest training residual. False
+  /// if that one stands in for another effect.
   bool with_closest(NextEffect& effect, ScreenedModel& out) const {
     if (!with(effect.term, out)) return false;
     if (!effect.term.neighbours) return true;
@@ -64,7 +65,7 @@ class Search {
       effect.term = std::move(refined);
     }
     effect.others.clear();
-    return true;
+    return !effect.term.is_itself || effect.term.is_itself(out.model);
   }
 
   /// Residual with each kind, for the report and for `add`.

@@ -21,6 +21,8 @@ struct EffortTerm {
   bool can_repeat = false;  ///< a drive may have several: waves of other periods
   /// Forms whose shape differs by this part; empty if the forms to try are close enough. Refers to the rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
+  /// Whether the form that fits most closely is this effect and does not stand in for another; empty: it always is.
+  std::function<bool(const sim::DriveDescription& fitted)> is_itself{};
   /// The effect of another kind that this form cannot be told from: of a gap that the encoder hardly resolves, the
   /// spring behind it. Empty for most. Refers to the rows.
   std::function<EffortTerm()> contained{};

@@ -85,10 +85,6 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     const double whole = inertia.at("J") + factors(0), share = factors(0) / whole;
     if (held || !(share > 0.0) || !(share < 1.0)) return false;
     const double ratio = 1.0 / std::sqrt(1.0 - share), on_load = load.friction * factors(0);
-    // With more damping there is no resonance, and the spring stands in for another effect. A load that strikes may
-    // have any damping.
-    constexpr double kSwings = 0.71;
-    if (load.gap <= 0.0 && load.damping * ratio > kSwings) return false;
     inertia.parameters["J"] = whole;
     double part = 0.0;
     if (sim::EffectEntry* coulomb = fitted.find("coulomb"); coulomb != nullptr && on_load > 0.0) {
@@ -109,6 +105,13 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     if (load.gap > 0.0) entry.parameters["gap"] = load.gap * lead;
     return append_within_bounds(fitted, std::move(entry));
   };
+  // With more damping there is no resonance, and the spring stands in for another effect. A load that strikes may have
+  // any damping. The search for the closest form may pass the limit: a form that stops at it is no spring either.
+  if (load.gap <= 0.0)
+    term.is_itself = [](const sim::DriveDescription& fitted) {
+      const double swings = 1.0 / std::numbers::sqrt2;  // beyond it the response has no maximum
+      return fitted.find("compliance")->at("damping_ratio") < swings;
+    };
   if (load.gap > 0.0)
     term.words = fmt::format("free travel {:.3g} {}{}", load.gap * rows.lead, unit,
                              load.friction > 0.0 ? ", friction on both sides" : "");
