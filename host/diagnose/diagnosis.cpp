@@ -10,6 +10,7 @@
 
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
+#include "host/diagnose/connection.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -297,14 +298,16 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent, timed);
   diagnosis.timed = std::move(timed);
   diagnosis.table = table;
+  const bool only_the_motor = table && table->empty();
+  if (only_the_motor) compare_connections_by_motion(diagnosis, absent);
   take_figures(given, diagnosis);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.verdict.explanation += said_by_the_motion(diagnosis);
-  if (table && table->empty()) take_back_denied_connection(diagnosis);
+  if (only_the_motor) take_back_denied_connection(diagnosis);
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
   name_coordinate(diagnosis);
   fill_found(diagnosis);
-  if (table && table->empty()) diagnosis.verdict.next_experiment += advice_on_a_scale(diagnosis.verdict);
+  if (only_the_motor) diagnosis.verdict.next_experiment += advice_on_a_scale(diagnosis.verdict);
   if (table && before == nullptr) settle_by_table(*table, diagnosis);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);

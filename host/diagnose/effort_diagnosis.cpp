@@ -97,8 +97,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
   return verdict;
 }
 
-/// Errors of the forward prediction closer than this ratio count as equal.
-constexpr double kHardly = 0.98;
 /// Every tried kind with its probability: later steps share the probability of the earlier ones, and a kind chosen
 /// before the last step represents its group.
 void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
@@ -258,35 +256,6 @@ std::string said_by_the_motion(const Diagnosis& diagnosis) {
                          : "does not change";
   return fmt::format(" The error of the prediction from the command {} ({:.3g} -> {:.3g} times the noise floor).", said,
                      before, after);
-}
-
-void take_back_denied_connection(Diagnosis& diagnosis) {
-  const auto is_connection = [](const std::string& kind) { return kind == "compliance" || kind == "backlash"; };
-  const EffortScreen* screen = diagnosis.screen.get();
-  if (!diagnosis.by_effort || screen == nullptr || screen->rows.steady) return;
-  if (std::ranges::none_of(screen->best().kinds, is_connection)) return;
-  if (diagnosis.best_error.validate.combined <= diagnosis.base_error.validate.combined / kHardly) return;
-  DiagnosisVerdict& verdict = diagnosis.verdict;
-  verdict.status = Status::unexplained;
-  verdict.effects.clear();
-  verdict.alternatives.clear();
-  verdict.explanation += " Torque and motion contradict each other, so nothing is named.";
-  verdict.next_experiment =
-      "Measure the table: with a scale (column x2_mm), or by a dial gauge at reversals (axistool dial). " +
-      verdict.next_experiment;
-  // Either measure may be the wrong one.
-  for (JudgedCandidate& candidate : diagnosis.candidates) candidate.probability *= 0.5;
-  verdict.probability_nothing *= 0.5;
-  verdict.probability_other = 0.5 * (1.0 + verdict.probability_other);
-  auto denied = std::make_shared<EffortScreen>(*screen);
-  denied->chosen.clear();
-  denied->tied.clear();
-  denied->certain.clear();
-  diagnosis.screen = std::move(denied);
-  diagnosis.best = diagnosis.base;
-  diagnosis.best_error = diagnosis.base_error;
-  diagnosis.after_train = diagnosis.before_train;
-  diagnosis.after_validate = diagnosis.before_validate;
 }
 
 void name_coordinate(Diagnosis& diagnosis) {

@@ -31,12 +31,11 @@ Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& s
 /// The first step of the regression, on sets that move enough: the odds of one effect, whichever measure would decide.
 std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets);
 
+/// Errors of the forward prediction closer than this ratio count as equal.
+inline constexpr double kHardly = 0.98;
+
 /// Result of the forward prediction for the chosen effects, as a sentence; may be empty.
 std::string said_by_the_motion(const Diagnosis& diagnosis);
-
-/// Withdraws a gap or spring that the force balance names if it increases the error of the prediction from the command
-/// on held-back records, because nothing between motor and table was measured. The verdict says so.
-void take_back_denied_connection(Diagnosis& diagnosis);
 
 /// If unexplained: names the coordinate that carries most of the residual, and the share that a free curve explains.
 void name_coordinate(Diagnosis& diagnosis);

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
+#include "host/diagnose/connection.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
 
 namespace {
-
-constexpr std::array<std::string_view, 2> kConnections = {"compliance", "backlash"};
 
 bool contains(const std::vector<std::string>& list, std::string_view name) {
   return std::ranges::find(list, name) != list.end();
@@ -32,8 +30,6 @@ bool is_too_small(const TableStudy& study, std::string_view kind) {
   const TableEffect* effect = study.find(kind);
   return is_denied(study, kind) || (effect != nullptr && !effect->worth_naming);
 }
-
-bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
 /// The connection that the motion names if the table names the other one: then neither is certain.
 std::optional<std::string> other_connection(const TableStudy& study, const DiagnosisVerdict& verdict) {

@@ -2,9 +2,9 @@
 """Machines with a scale on the table that the program knows nothing of (table_machine.py): up to three of backlash,
 compliance, pitch error, cyclic errors of scale and motor encoder, and thermal growth, or none. Seeds are printed; with an
 argument as many machines are tried, and each is diagnosed with its scale and without. Without the argument two machines
-are tried, one of which has a gap and a spring that lose as much at a reversal as other pairs of them; and two are
-diagnosed without a scale: one whose torque alone speaks for a gap, which its motion denies, and one whose spring bends
-by the friction of one side, as if there were a gap."""
+are tried, one of which has a gap and a spring that lose as much at a reversal as other pairs of them; and three are
+diagnosed without a scale: one whose torque alone speaks for a gap, which its motion denies; one whose spring bends by
+the friction of one side, as if there were a gap; and one whose torque takes its rigid gap for a spring."""
 
 import json
 import math
@@ -19,7 +19,7 @@ from table_machine import LEAD, Machine  # noqa: E402
 
 AXISTOOL = os.environ["AXISTOOL"]
 FEW = (1, 438)
-NO_GAP = (105, 425)
+WITHOUT_SCALE = (105, 425, 581)
 
 
 def axistool(*arguments: object) -> dict:
@@ -98,7 +98,7 @@ def main() -> None:
                   f"{'; '.join(faults)}")
             if len(sys.argv) > 1:
                 wrong_names += diagnosed(machine, model, path)
-    for seed in NO_GAP if len(sys.argv) == 1 else ():
+    for seed in WITHOUT_SCALE if len(sys.argv) == 1 else ():
         machine = Machine(seed)
         with tempfile.TemporaryDirectory() as folder:
             wrong_names += diagnosed(machine, write_records(machine, Path(folder)), Path(folder), WITHOUT)
