@@ -50,8 +50,7 @@ class Search {
     return true;
   }
 
-  /// The same with the form refined, from each start of its kind: the one with the smallest training residual. False
-  /// if that one stands in for another effect.
+  /// The same with the closest form, from each start of its kind. False if that form stands in for another effect.
   bool with_closest(NextEffect& effect, ScreenedModel& out) const {
     if (!with(effect.term, out)) return false;
     if (!effect.term.neighbours) return true;
