@@ -1,4 +1,4 @@
-// axistool commission: commissions an unknown axis in one command.
+// axistool commission: commissions an unknown axis in one command, or all axes of a machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +7,14 @@
 #include <memory>
 #include <optional>
 
+#include "host/atomic_file.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/commission/commission.hpp"
 #include "host/commission/folder_lock.hpp"
+#include "host/commission/matched_loops.hpp"
 #include "host/external_plant/external_plant.hpp"
 #include "host/model/model_file.hpp"
 #include "host/shipped_files.hpp"
@@ -24,14 +26,22 @@ namespace axistool {
 namespace {
 
 struct CommissionArguments : DeviceArguments {
-  std::string axis, model, plant, drive, folder, box, home, from, to;
+  std::vector<std::string> axes, models, drives, boxes;  ///< of the last three one for all axes, or one for each
+  std::string plant, folder, home, from, to;
   double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz, modulus = host::CommissionOptions{}.modulus;
   std::uint64_t seed = 1;
   std::optional<double> overtravel;
   bool save = false;
 };
 
-bool is_simulated(const CommissionArguments& arguments) { return !arguments.model.empty() || !arguments.plant.empty(); }
+bool is_simulated(const CommissionArguments& arguments) {
+  return !arguments.models.empty() || !arguments.plant.empty();
+}
+
+/// Of axis `i`; empty if the option was not given.
+std::string of_axis(const std::vector<std::string>& given, std::size_t i) {
+  return given.empty() ? "" : given[given.size() == 1 ? 0 : i];
+}
 
 /// The usual wiring, with a home switch within the box.
 hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
@@ -39,22 +49,32 @@ hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
   return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
 }
 
-/// The board, or a simulated axis behind the board's own protocol.
-host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
-                           const host::CommissionOptions& options) {
+/// An axis and where its results are kept.
+struct Axis {
+  std::unique_ptr<host::CommissionFolder> folder;
+  host::CommissionOptions options;
+  sim::DriveDescription machine;  ///< to be simulated
+};
+
+/// The board, or simulated axes behind the board's own protocol.
+host::BoardClient board_of(const CommissionArguments& arguments, const std::vector<Axis>& axes) {
   if (!is_simulated(arguments)) return open_board(arguments);
-  std::vector<host::SimulatedDrive> drives(std::size_t{options.axis} + 1);
-  for (host::SimulatedDrive& drive : drives) {
-    drive.drive = machine;
-    drive.wiring = wiring_of(options);
+  std::size_t last = 0;
+  for (const Axis& axis : axes) last = std::max<std::size_t>(last, axis.options.axis);
+  std::vector<host::SimulatedDrive> drives(last + 1);
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const auto named = std::ranges::find(axes, i, [](const Axis& axis) { return std::size_t{axis.options.axis}; });
+    const Axis& like = named == axes.end() ? axes.front() : *named;
+    drives[i].drive = like.machine;
+    drives[i].wiring = wiring_of(like.options);
   }
   if (!arguments.plant.empty()) {
     const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(std::max(arguments.patience_s, 10.0)));
-    const auto plant =
-        std::make_shared<host::ExternalPlant>(arguments.plant, drives.size(), machine.data.sample_period_s, patience);
+    const auto plant = std::make_shared<host::ExternalPlant>(arguments.plant, drives.size(),
+                                                             drives.front().drive.data.sample_period_s, patience);
     for (std::size_t i = 0; i < drives.size(); ++i) {
-      drives[i].drive = host::data_sheet_alone(machine);
+      drives[i].drive = host::data_sheet_alone(drives[i].drive);
       drives[i].motion = host::ExternalPlant::axis(plant, i);
     }
   }
@@ -77,14 +97,12 @@ std::optional<host::CommissionHoming> homing_of(const CommissionArguments& argum
   return host::CommissionHoming{kModes.at(arguments.home.substr(is_backward ? 1 : 0)), 0.0, is_backward};
 }
 
-std::uint8_t axis_of(const std::string& name) { return axis_index(name, hal::kMostAxes); }
-
 /// The data sheet: from the command line, else of the simulated machine, else from the folder.
-sim::DriveDescription sheet_of(const CommissionArguments& arguments, const std::string& kept) {
+sim::DriveDescription sheet_of(const std::string& drive, const std::string& model, const std::string& kept) {
   std::error_code fault;
-  if (!arguments.drive.empty()) return host::read_drive(arguments.drive);
-  if (!arguments.model.empty()) {
-    sim::DriveDescription sheet = host::read_drive(host::machine_file(arguments.model));
+  if (!drive.empty()) return host::read_drive(drive);
+  if (!model.empty()) {
+    sim::DriveDescription sheet = host::read_drive(host::machine_file(model));
     sheet.effects.clear();  // they are what is looked for
     return sheet;
   }
@@ -110,37 +128,71 @@ void begin_or_go_on(const CommissionArguments& arguments, const host::Commission
                   next ? host::kCommissionSteps[*next].name : "compensate"));
 }
 
-void run(const CommissionArguments& arguments) {
-  const host::FolderLock lock(arguments.folder);
-  host::CommissionFolder folder(arguments.folder);
-  begin_or_go_on(arguments, folder);
-  const std::size_t from = arguments.from.empty() ? 0 : host::commission_step(arguments.from);
-  const std::size_t to = arguments.to.empty() ? host::kCommissionSteps.size() - 1 : host::commission_step(arguments.to);
-  const std::string kept = folder.path("drive.toml");
-  host::CommissionOptions options;
-  options.axis = axis_of(arguments.axis);
-  options.axis_name = arguments.axis;
-  options.sheet = sheet_of(arguments, kept);
+Axis axis_of(const CommissionArguments& arguments, std::size_t i, const std::string& path) {
+  Axis axis{std::make_unique<host::CommissionFolder>(path), {}, {}};
+  host::CommissionFolder& folder = *axis.folder;
+  host::CommissionOptions& options = axis.options;
+  const std::string& name = arguments.axes[i];
+  const std::string kept = folder.path("drive.toml"), model = of_axis(arguments.models, i);
+  options.axis = axis_index(name, hal::kMostAxes);
+  options.axis_name = name;
+  options.sheet = sheet_of(of_axis(arguments.drives, i), model, kept);
   options.bandwidth_Hz = arguments.bandwidth_Hz;
   options.modulus = arguments.modulus;
   options.save = arguments.save;
   if (folder.document().contains("overtravel")) options.overtravel = folder.document()["overtravel"];
   if (arguments.overtravel) options.overtravel = arguments.overtravel;
-  std::string box = arguments.box.empty() ? folder.document().value("box", "") : arguments.box;
+  std::string box = of_axis(arguments.boxes, i);
+  if (box.empty()) box = folder.document().value("box", "");
   if (box.empty() && is_simulated(arguments)) box = usual_box(options.sheet.data.kind);
   if (box.empty())
     throw host::Failure(host::ExitCode::refused,
                         "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
   options.box = host::parse_box(box, options.sheet.data.kind);
   options.homing = homing_of(arguments, options);
-  folder.put("axis", arguments.axis);
+  folder.put("axis", name);
   folder.put("box", box);
   if (options.overtravel) folder.put("overtravel", *options.overtravel);
   host::write_model(options.sheet, kept);
-  const sim::DriveDescription machine =
-      arguments.model.empty() ? options.sheet : host::read_drive(host::machine_file(arguments.model));
-  host::BoardClient board = board_of(arguments, machine, options);
-  axis_index(arguments.axis, board.axis_count());
+  axis.machine = model.empty() ? options.sheet : host::read_drive(host::machine_file(model));
+  return axis;
+}
+
+void require_one_or_all(const CommissionArguments& arguments) {
+  for (const auto& [name, given] : {std::pair("--sim", &arguments.models), std::pair("--drive", &arguments.drives),
+                                    std::pair("--box", &arguments.boxes)})
+    if (given->size() > 1 && given->size() != arguments.axes.size())
+      throw host::Failure(
+          host::ExitCode::usage,
+          fmt::format("{} is given {} times for {} axes: give it once for all axes, or once for each, in "
+                      "the order of the axes",
+                      name, given->size(), arguments.axes.size()));
+  for (std::size_t i = 0; i < arguments.axes.size(); ++i)
+    if (std::ranges::count(arguments.axes, arguments.axes[i]) > 1)
+      throw host::Failure(host::ExitCode::usage, fmt::format("axis {} is named twice", arguments.axes[i]));
+}
+
+void tell_pages(const CommissionArguments& arguments, const std::vector<Axis>& axes) {
+  if (!talks(arguments)) return;
+  for (const Axis& axis : axes)
+    if (axis.folder->document()["page"].is_string())
+      fmt::print("Page: {}\n", axis.folder->document()["page"].get<std::string>());
+}
+
+void run(const CommissionArguments& arguments) {
+  require_one_or_all(arguments);
+  const bool is_machine = arguments.axes.size() > 1;
+  const host::FolderLock lock(arguments.folder);
+  const std::size_t last = host::kCommissionSteps.size() - 1;
+  const std::size_t to = arguments.to.empty() ? last : host::commission_step(arguments.to);
+  std::vector<Axis> axes;
+  for (std::size_t i = 0; i < arguments.axes.size(); ++i)
+    axes.push_back(axis_of(
+        arguments, i,
+        is_machine ? (std::filesystem::path(arguments.folder) / arguments.axes[i]).string() : arguments.folder));
+  if (!is_machine) begin_or_go_on(arguments, *axes.front().folder);
+  host::BoardClient board = board_of(arguments, axes);
+  for (const std::string& axis : arguments.axes) axis_index(axis, board.axis_count());
   host::CommissionTalk talk;
   talk.consents = [&](const std::string& question) {
     require_consent(arguments, question);
@@ -154,10 +206,25 @@ void run(const CommissionArguments& arguments) {
       std::fflush(stdout);
     };
   catch_interrupts();
-  host::commission_axis(board, options, talk, folder, from, to);
-  if (!arguments.json.empty()) write_json(folder.document(), arguments.json);
-  if (talks(arguments) && folder.document()["page"].is_string())
-    fmt::print("Page: {}\n", folder.document()["page"].get<std::string>());
+  std::vector<host::CommissionedAxis> done;
+  for (Axis& axis : axes) {
+    if (is_machine) talk.tell(fmt::format("Axis {}", axis.options.axis_name));
+    // A machine continues where it was interrupted: an axis that is complete stays as it is.
+    const std::size_t next = is_machine ? axis.folder->first_undone().value_or(last + 1) : 0;
+    const std::size_t from = arguments.from.empty() ? next : host::commission_step(arguments.from);
+    if (from <= to) host::commission_axis(board, axis.options, talk, *axis.folder, from, to);
+    done.push_back({axis.options, axis.folder.get()});
+  }
+  nlohmann::json document = axes.front().folder->document();
+  if (is_machine) {
+    document = {{"format", "axis-machine-commission/1"}, {"axes", nlohmann::json::object()}, {"loops", nullptr}};
+    for (const Axis& axis : axes) document["axes"][axis.options.axis_name] = axis.folder->document();
+    if (to == last) document["loops"] = host::match_loops(board, done, talk);
+    host::write_file_atomically((std::filesystem::path(arguments.folder) / "machine.json").string(),
+                                document.dump(2) + "\n");
+  }
+  if (!arguments.json.empty()) write_json(document, arguments.json);
+  tell_pages(arguments, axes);
 }
 
 std::string footer() {
@@ -166,9 +233,12 @@ std::string footer() {
       "  axistool commission x --sim cogging -o x --yes\n"
       "  axistool commission x --drive x.toml --box travel=80,speed=200,volts=3,time=360 -o x\n"
       "  axistool commission x -o x --from diagnose\n"
+      "  axistool commission x y --drive x.toml --drive y.toml --box travel=80,speed=200,volts=3,time=360 -o machine\n"
       "  axistool commission x --plant 'python3 05-own-plant.py' --drive 05-own-plant.toml -o own --yes\n"
-      "Every step asks before the axis moves. Its results are files in the folder; --from continues from them. "
-      "Steps:\n";
+      "Every step asks before the axis moves. Its results are files in the folder; --from continues from them.\n"
+      "Several axes are one machine: each has a folder of its own in that of -o, and after the last one all get the\n"
+      "same closed loop, so that straight lines stay straight (machine.json). The same command continues a machine\n"
+      "that was interrupted. Steps of an axis:\n";
   for (const host::CommissionStepText& step : host::kCommissionSteps)
     text += fmt::format("  {:<11} {}\n", step.name, step.does);
   return text + "Shipped machines for --sim: " + host::shipped_machines_text();
@@ -180,14 +250,21 @@ void add_commission(CLI::App& app) {
   auto arguments = std::make_shared<CommissionArguments>();
   CLI::App* command = app.add_subcommand(
       "commission", "Commission an unknown axis: record, identify, find the missing effect, compensate");
-  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
+  command->add_option("AXIS", arguments->axes, "x, y, …; several: the axes of one machine")->required();
   add_output(*command, "-o,--output", arguments->folder, "folder for every result", FileRole::output_folder)
       ->required();
-  add_input(*command, "--sim", arguments->model,
-            "simulate this machine instead of using a board: a model file or a shipped machine");
+  // Once each: the axes may follow.
+  add_input(*command, "--sim", arguments->models,
+            "simulate this machine instead of using a board: a model file or a shipped machine; with several axes once "
+            "for all, or once for each")
+      ->allow_extra_args(false);
   command->add_option("--plant", arguments->plant, "program that simulates the machine, in lockstep (axis-plant/1)");
-  add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
-  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, total s");
+  add_input(*command, "--drive", arguments->drives, "data sheet of the drive (default: that of --sim); as --sim")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--box", arguments->boxes,
+                   "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, total s; as --sim")
+      ->allow_extra_args(false);
   command
       ->add_option(
           "--overtravel", arguments->overtravel,

@@ -1,0 +1,91 @@
+// The common loop at the end of commissioning a machine of two unlike axes: what it writes, what the board holds and
+// how the axes then follow; and what the board holds after a refusal.
+#include "host/commission/matched_loops.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "host/exit_codes.hpp"
+#include "host/model/model_file.hpp"
+#include "host/simulated_board/usual_wiring.hpp"
+#include "tests/host/axes/unlike_axes.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+class MatchedLoops : public testing::Test {
+ protected:
+  MatchedLoops() {
+    const host::CommissionTalk silent;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const sim::DriveDescription& model = axes_test::machine()[i].model;
+      folders_[i] = std::make_unique<host::CommissionFolder>(disk_.path(model.name));
+      host::write_model(model, folders_[i]->path("improved.toml"));
+      folders_[i]->write_json("errors.json", {{"kept", "after"}, {"sets", {{{"name", "after"}, {"rms_um", 7.0}}}}});
+      host::CommissionOptions options;
+      options.axis = static_cast<std::uint8_t>(i);
+      options.axis_name = model.name;
+      options.sheet = model;
+      options.sheet.effects.clear();
+      options.box = {100.0, 200.0, 6.0, 60.0};
+      options.modulus = 0.4;
+      host::CommissionSession session(board_, options, silent, *folders_[i]);
+      session.give_scales();
+      session.plan_limits(model);
+      axes_.push_back({options, folders_[i].get()});
+    }
+  }
+
+  static host::BoardClient board() {
+    std::vector<host::SimulatedDrive> drives;
+    for (const host::AxisTask& task : axes_test::machine()) drives.push_back(host::usual_axis(task.model));
+    return host::BoardClient(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", 1}));
+  }
+
+  const TemporaryFolder disk_;
+  std::array<std::unique_ptr<host::CommissionFolder>, 2> folders_;
+  std::vector<host::CommissionedAxis> axes_;
+  host::BoardClient board_ = board();
+};
+
+/// Catches axes that get another's gains or loop, and figures of another motion.
+TEST_F(MatchedLoops, AreOnTheBoardAndInTheFolders) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const nlohmann::json found = host::match_loops(board_, axes_, {});
+  const firmware::ParameterValues values = board_.read_values();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const nlohmann::json& axis = found["matched"]["axes"][i];
+    EXPECT_EQ(axis["options"]["fc_Hz"], found["matched"]["axes"][0]["options"]["fc_Hz"]);
+    const double k1 = axis["Kc"][0];
+    EXPECT_NEAR(values.axis(i).get<"feedback.k1">(), k1, 1e-5 * k1);
+    EXPECT_TRUE(folders_[i]->has("matched-params.toml"));
+    EXPECT_TRUE(folders_[i]->has("matched.csv"));
+    const nlohmann::json& error = found["following_error_um"][axes_[i].options.axis_name];
+    EXPECT_EQ(error["own"], 7.0);
+    EXPECT_GT(error["matched"], 0.3);  // steps of 2.44 um
+    EXPECT_LT(error["matched"], 12.0);
+  }
+  EXPECT_GT(values.axis(1).get<"feedback.k1">(), 1.7F * values.axis(0).get<"feedback.k1">());
+}
+
+/// Catches a machine that is left with one axis matched and the other not.
+TEST_F(MatchedLoops, ARefusalLeavesTheBoardAsItWas) {
+  const firmware::ParameterValues before = board_.read_values();
+  host::CommissionTalk talk;
+  int asked = 0;
+  talk.consents = [&asked](const std::string&) { return ++asked < 2; };
+  try {
+    host::match_loops(board_, axes_, talk);
+    ADD_FAILURE() << "not refused";
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, host::ExitCode::refused);
+  }
+  EXPECT_EQ(board_.read_values(), before);
+}
+
+}  // namespace
