@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <string>
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include "host/diagnose/effort_diagnosis.hpp"
+#include "host/effort/effort_screen.hpp"
 #include "host/effort/second_mass_terms.hpp"
 #include "sim/catalogue.hpp"
 
@@ -16,74 +15,71 @@ namespace host {
 
 namespace {
 
-bool names_connection(const ScreenedModel& step) { return std::ranges::any_of(step.kinds, is_connection); }
+/// The connection that the force balance names; empty if there is none, or if the balance did not decide.
+std::string named_by_balance(const Diagnosis& diagnosis) {
+  const EffortScreen* screen = diagnosis.screen.get();
+  if (!diagnosis.by_effort || screen == nullptr || screen->rows.steady) return {};
+  const std::vector<std::string>& kinds = screen->best().kinds;
+  const auto named = std::ranges::find_if(kinds, is_connection);
+  return named == kinds.end() ? std::string() : *named;
+}
 
-/// Both connections as effects of `rest`, fitted in the motion; those that lower the error on a few windows.
-std::vector<Candidate> fitted_connections(const sim::DriveDescription& rest, const PreparedSets& sets) {
-  std::vector<const sim::EffectInfo*> infos;
-  for (const std::string_view kind : kConnections) infos.push_back(sim::find_effect(kind));
-  return search_kinds(infos, rest, {}, sets.training, sets.validation);
+/// The same verdict with another connection in place of one.
+void exchange(const std::string& from, const sim::EffectEntry& to, Diagnosis& diagnosis) {
+  const auto rename_in = [&](std::vector<std::string>& kinds) { std::ranges::replace(kinds, from, to.kind); };
+  const auto exchange_in = [&](auto& candidate) {
+    rename_in(candidate.kinds);
+    if (sim::EffectEntry* entry = candidate.model.find(from)) *entry = to;
+  };
+  auto exchanged = std::make_shared<EffortScreen>(*diagnosis.screen);
+  std::ranges::for_each(exchanged->chosen, exchange_in);
+  for (CertainEffect& certain : exchanged->certain) rename_in(certain.group);
+  std::ranges::for_each(exchanged->tied, rename_in);
+  diagnosis.screen = std::move(exchanged);
+  std::ranges::for_each(diagnosis.candidates, exchange_in);
+  rename_in(diagnosis.verdict.effects);
+  std::ranges::for_each(diagnosis.verdict.alternatives, rename_in);
 }
 
 }  // namespace
 
 bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
-std::shared_ptr<const EffortScreen> with_connection_of_motion(const EffortScreen& screen, const PreparedSets& sets) {
-  const auto step = std::ranges::find_if(screen.chosen, names_connection);
-  if (screen.rows.steady || step == screen.chosen.end()) return nullptr;
-  const auto place = static_cast<std::size_t>(step - screen.chosen.begin());
-  const std::string named = *std::ranges::find_if(step->kinds, is_connection);
+void compare_connections_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent) {
+  const std::string named = named_by_balance(diagnosis);
+  if (named.empty()) return;
   const std::string other(kConnections[named == kConnections[0] ? 1 : 0]);
   const auto is_other = [&](const std::vector<std::string>& kinds) {
     return std::ranges::find(kinds, other) != kinds.end();
   };
-  if (is_other(sets.absent) || is_other(screen.tied[place])) return nullptr;
-  // The balance's friction is that of sliding alone, from which a fit of the motion may not find back.
-  sim::DriveDescription rest = with_base_fitted(sets).base;
-  if (place > 0)
-    for (const std::string& kind : screen.chosen[place - 1].kinds)
-      rest.effects.push_back(*screen.chosen[place - 1].model.find(kind));
-  const std::vector<Candidate> fitted = fitted_connections(rest, sets);
+  if (is_other(absent) || std::ranges::any_of(diagnosis.screen->tied, is_other)) return;
+  sim::DriveDescription rest = diagnosis.screen->best().model;
+  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == named; });
+  const std::vector<Candidate> fitted = search_kinds({sim::find_effect(named), sim::find_effect(other)}, rest, {},
+                                                     diagnosis.training, diagnosis.validation);
   const auto of = [&](const std::string& kind) {
     return std::ranges::find(fitted, std::vector{kind}, &Candidate::kinds);
   };
-  if (of(other) == fitted.end()) return nullptr;
-  const Candidate &better = *of(other), rival = of(named) == fitted.end()
-                                                    ? judged({}, rest, rest, sets.training, sets.validation)
-                                                    : *of(named);
+  const auto with_named = of(named), with_other = of(other);
+  if (with_other == fitted.end()) return;
+  const Candidate rival =
+      with_named == fitted.end() ? judged({}, rest, rest, diagnosis.training, diagnosis.validation) : *with_named;
   constexpr double kBetter = 1.1;  // as of models that predict equally well
-  if (kBetter * better.training.combined >= rival.training.combined ||
-      kBetter * better.validation.combined >= rival.validation.combined)
-    return nullptr;
-  const sim::EffectEntry& entry = *better.model.find(other);
-  if (entry.has("gap") && entry.at("gap") < least_gap(rest.data)) return nullptr;
-  auto exchanged = std::make_shared<EffortScreen>(screen);
-  exchanged->chosen.resize(place + 1);
-  exchanged->tied.resize(place + 1);
-  exchanged->steps.resize(place + 1);
-  const auto exchange_in = [&](ScreenedModel& model) {
-    std::ranges::replace(model.kinds, named, other);
-    model.model = better.model;
-    model.words = fmt::format("by the motion: error over noise floor {:.3g} instead of {:.3g}",
-                              better.validation.combined, rival.validation.combined);
-  };
-  std::erase_if(exchanged->steps.back(), [&](const ScreenedModel& tried) { return is_other(tried.kinds); });
-  for (ScreenedModel& tried : exchanged->steps.back())
-    if (tried.kinds == step->kinds) exchange_in(tried);
-  exchange_in(exchanged->chosen.back());
-  const auto certain = std::ranges::find_if(exchanged->certain,
-                                            [&](const CertainEffect& effect) { return effect.group.front() == named; });
-  if (certain != exchanged->certain.end()) {
-    certain->group.front() = other;
-    exchanged->certain.erase(std::next(certain), exchanged->certain.end());
-  }
-  return exchanged;
+  if (kBetter * with_other->training.combined >= rival.training.combined ||
+      kBetter * with_other->validation.combined >= rival.validation.combined)
+    return;
+  const sim::EffectEntry& entry = *with_other->model.find(other);
+  if (entry.has("gap") && entry.at("gap") < least_gap(rest.data)) return;
+  exchange(named, entry, diagnosis);
+  diagnosis.best = with_other->model;
+  diagnosis.verdict.explanation += fmt::format(
+      " While the axis slides, a gap and a spring hardly differ. At reversals they do, and {} predicts the motion "
+      "better.",
+      other == "backlash" ? "a gap" : "a spring without a gap");
 }
 
 void take_back_denied_connection(Diagnosis& diagnosis) {
-  const EffortScreen* screen = diagnosis.screen.get();
-  if (!diagnosis.by_effort || screen == nullptr || screen->rows.steady || !names_connection(screen->best())) return;
+  if (named_by_balance(diagnosis).empty()) return;
   if (diagnosis.best_error.validate.combined <= diagnosis.base_error.validate.combined / kHardly) return;
   DiagnosisVerdict& verdict = diagnosis.verdict;
   verdict.status = Status::unexplained;
@@ -97,7 +93,7 @@ void take_back_denied_connection(Diagnosis& diagnosis) {
   for (JudgedCandidate& candidate : diagnosis.candidates) candidate.probability *= 0.5;
   verdict.probability_nothing *= 0.5;
   verdict.probability_other = 0.5 * (1.0 + verdict.probability_other);
-  auto denied = std::make_shared<EffortScreen>(*screen);
+  auto denied = std::make_shared<EffortScreen>(*diagnosis.screen);
   denied->chosen.clear();
   denied->tied.clear();
   denied->certain.clear();

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/effort/effort_screen.hpp"
 
 namespace host {
 
@@ -15,11 +15,11 @@ namespace host {
 inline constexpr std::array<std::string_view, 2> kConnections = {"compliance", "backlash"};
 bool is_connection(std::string_view kind);
 
-/// The screen with the connection that the motion shows in place of the one that the force balance names: the other
-/// one, if with it and the effects named before it both sets are predicted better; nothing that was named after it
-/// remains. The balance holds sliding motion only and sees a load that lags; a reversal shows whether by a gap or by a
-/// spring. Empty where the screen stands: it names neither, both as a group, or the other one is in sets.absent.
-std::shared_ptr<const EffortScreen> with_connection_of_motion(const EffortScreen& screen, const PreparedSets& sets);
+/// Compares the gap or spring that the force balance names with the other one by the motion, both fitted to the
+/// training records. The balance holds sliding motion only and sees a load that lags; a reversal shows whether by a gap
+/// or by a spring. The other one takes the place of the named one if it predicts both sets better. Nothing changes
+/// where the other one is in `absent`, where both are a group already, or where the balance names neither.
+void compare_connections_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent);
 
 /// Withdraws a gap or spring that the force balance names if it increases the error of the prediction from the command
 /// on held-back records, because nothing between motor and table was measured. The verdict says so.

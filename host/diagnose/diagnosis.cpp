@@ -213,8 +213,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (!seen->empty()) screen = seen;
     if (seen->chosen.empty() && !effort_decides(*seen, split.validation)) return {};
     if (!seen->chosen.empty() && time_beside(seen->best().model)) prepare();
-    if (auto exchanged = with_connection_of_motion(*screen, split)) screen = std::move(exchanged);
-    Diagnosis diagnosis = diagnosis_of(model, split, screen);
+    Diagnosis diagnosis = diagnosis_of(model, split, seen);
     diagnosis.log = measured.log();
     diagnosis.rows = rows;
     if (progress) progress(1.0);
@@ -300,6 +299,7 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   diagnosis.timed = std::move(timed);
   diagnosis.table = table;
   const bool only_the_motor = table && table->empty();
+  if (only_the_motor) compare_connections_by_motion(diagnosis, absent);
   take_figures(given, diagnosis);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.verdict.explanation += said_by_the_motion(diagnosis);

@@ -73,10 +73,6 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
   return column;
 }
 
-const sim::ParameterInfo& damping_of(const std::string& kind) {
-  return *sim::find_effect(kind)->parameter("damping_ratio");
-}
-
 EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
   // A load that its own friction holds acts as a hysteresis (a cable chain, a seal), whatever its mass.
@@ -101,20 +97,21 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     }
     sim::EffectEntry entry;
     entry.kind = load.gap > 0.0 ? "backlash" : "compliance";
-    const sim::ParameterInfo& bounds = damping_of(entry.kind);
     entry.parameters = {{"resonance", load.resonance_Hz * ratio},
-                        {"damping_ratio", std::clamp(load.damping * ratio, bounds.lower, bounds.upper)},
+                        {"damping_ratio", std::clamp(load.damping * ratio, 0.001, 1.0)},
                         {"load_fraction", share},
                         {"load_friction", part},
                         {"load_viscous", 0.0}};
     if (load.gap > 0.0) entry.parameters["gap"] = load.gap * lead;
     return append_within_bounds(fitted, std::move(entry));
   };
-  // The search for the closest form may reach the bound of damping, as a fit may: then it is no spring.
-  term.is_itself = [](const sim::DriveDescription& fitted) {
-    const sim::EffectEntry* spring = fitted.find("compliance");
-    return spring == nullptr || spring->at("damping_ratio") < damping_of("compliance").upper;
-  };
+  // With more damping there is no resonance, and the spring stands in for another effect. A load that strikes may have
+  // any damping. The search for the closest form may pass the limit: a form that stops at it is no spring either.
+  if (load.gap <= 0.0)
+    term.is_itself = [](const sim::DriveDescription& fitted) {
+      const double swings = 1.0 / std::numbers::sqrt2;  // beyond it the response has no maximum
+      return fitted.find("compliance")->at("damping_ratio") < swings;
+    };
   if (load.gap > 0.0)
     term.words = fmt::format("free travel {:.3g} {}{}", load.gap * rows.lead, unit,
                              load.friction > 0.0 ? ", friction on both sides" : "");

@@ -203,7 +203,7 @@ const std::map<std::string_view, Powerless> kPowerless = {
     {"external_torque", {{{"torque", 0.0}, {"start", 0.1}, {"duration", 0.1}}}},
     {"torque_ripple", {{{"cosine", 0.0}, {"sine", 0.0}, {"period", 10.0}}, 1e-12}},
     // Hardly any mass behind a stiff spring.
-    {"compliance", {{{"resonance", 1000.0}, {"damping_ratio", 0.7}, {"load_fraction", 0.02}}, 1e-2}},
+    {"compliance", {{{"resonance", 1000.0}, {"damping_ratio", 1.0}, {"load_fraction", 0.02}}, 1e-2}},
     {"backlash", {{{"gap", 0.0}, {"resonance", 1000.0}, {"damping_ratio", 1.0}, {"load_fraction", 0.02}}, 1e-2}},
     {"input_delay", {{{"delay", 0.0}}}},
     {"current_loop_lag", {{{"bandwidth", 1e9}}, 1e-6}},
