@@ -51,6 +51,7 @@ hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
 
 /// An axis and where its results are kept.
 struct Axis {
+  std::unique_ptr<host::FolderLock> lock;
   std::unique_ptr<host::CommissionFolder> folder;
   host::CommissionOptions options;
   sim::DriveDescription machine;  ///< to be simulated
@@ -129,8 +130,9 @@ void begin_or_go_on(const CommissionArguments& arguments, const host::Commission
 }
 
 Axis axis_of(const CommissionArguments& arguments, std::size_t i, const std::string& path) {
-  Axis axis{std::make_unique<host::CommissionFolder>(path), {}, {}};
+  Axis axis{std::make_unique<host::FolderLock>(path), std::make_unique<host::CommissionFolder>(path), {}, {}};
   host::CommissionFolder& folder = *axis.folder;
+  if (arguments.axes.size() == 1) begin_or_go_on(arguments, folder);
   host::CommissionOptions& options = axis.options;
   const std::string& name = arguments.axes[i];
   const std::string kept = folder.path("drive.toml"), model = of_axis(arguments.models, i);
@@ -182,7 +184,6 @@ void tell_pages(const CommissionArguments& arguments, const std::vector<Axis>& a
 void run(const CommissionArguments& arguments) {
   require_one_or_all(arguments);
   const bool is_machine = arguments.axes.size() > 1;
-  const host::FolderLock lock(arguments.folder);
   const std::size_t last = host::kCommissionSteps.size() - 1;
   const std::size_t to = arguments.to.empty() ? last : host::commission_step(arguments.to);
   std::vector<Axis> axes;
@@ -190,7 +191,6 @@ void run(const CommissionArguments& arguments) {
     axes.push_back(axis_of(
         arguments, i,
         is_machine ? (std::filesystem::path(arguments.folder) / arguments.axes[i]).string() : arguments.folder));
-  if (!is_machine) begin_or_go_on(arguments, *axes.front().folder);
   host::BoardClient board = board_of(arguments, axes);
   for (const std::string& axis : arguments.axes) axis_index(axis, board.axis_count());
   host::CommissionTalk talk;

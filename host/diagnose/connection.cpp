@@ -45,37 +45,35 @@ void exchange(const std::string& from, const sim::EffectEntry& to, Diagnosis& di
 
 bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
-void compare_connections_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent) {
-  const std::string named = named_by_balance(diagnosis);
-  if (named.empty()) return;
-  const std::string other(kConnections[named == kConnections[0] ? 1 : 0]);
-  const auto is_other = [&](const std::vector<std::string>& kinds) {
-    return std::ranges::find(kinds, other) != kinds.end();
+void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent) {
+  const std::string spring(kConnections[0]), gap(kConnections[1]);
+  if (named_by_balance(diagnosis) != spring) return;
+  const auto holds_gap = [&](const std::vector<std::string>& kinds) {
+    return std::ranges::find(kinds, gap) != kinds.end();
   };
-  if (is_other(absent) || std::ranges::any_of(diagnosis.screen->tied, is_other)) return;
+  if (holds_gap(absent) || std::ranges::any_of(diagnosis.screen->tied, holds_gap)) return;
   sim::DriveDescription rest = diagnosis.screen->best().model;
-  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == named; });
-  const std::vector<Candidate> fitted = search_kinds({sim::find_effect(named), sim::find_effect(other)}, rest, {},
+  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == spring; });
+  const std::vector<Candidate> fitted = search_kinds({sim::find_effect(spring), sim::find_effect(gap)}, rest, {},
                                                      diagnosis.training, diagnosis.validation);
   const auto of = [&](const std::string& kind) {
     return std::ranges::find(fitted, std::vector{kind}, &Candidate::kinds);
   };
-  const auto with_named = of(named), with_other = of(other);
-  if (with_other == fitted.end()) return;
+  const auto with_spring = of(spring), with_gap = of(gap);
+  if (with_gap == fitted.end()) return;
   const Candidate rival =
-      with_named == fitted.end() ? judged({}, rest, rest, diagnosis.training, diagnosis.validation) : *with_named;
+      with_spring == fitted.end() ? judged({}, rest, rest, diagnosis.training, diagnosis.validation) : *with_spring;
   constexpr double kBetter = 1.1;  // as of models that predict equally well
-  if (kBetter * with_other->training.combined >= rival.training.combined ||
-      kBetter * with_other->validation.combined >= rival.validation.combined)
+  if (kBetter * with_gap->training.combined >= rival.training.combined ||
+      kBetter * with_gap->validation.combined >= rival.validation.combined)
     return;
-  const sim::EffectEntry& entry = *with_other->model.find(other);
-  if (entry.has("gap") && entry.at("gap") < least_gap(rest.data)) return;
-  exchange(named, entry, diagnosis);
-  diagnosis.best = with_other->model;
-  diagnosis.verdict.explanation += fmt::format(
-      " While the axis slides, a gap and a spring hardly differ. At reversals they do, and {} predicts the motion "
-      "better.",
-      other == "backlash" ? "a gap" : "a spring without a gap");
+  const sim::EffectEntry& entry = *with_gap->model.find(gap);
+  if (entry.at("gap") < least_gap(rest.data)) return;
+  exchange(spring, entry, diagnosis);
+  diagnosis.best = with_gap->model;
+  diagnosis.verdict.explanation +=
+      " While the axis slides, a gap and a spring hardly differ. At reversals they do, and a gap predicts the motion "
+      "better.";
 }
 
 void take_back_denied_connection(Diagnosis& diagnosis) {

@@ -11,15 +11,16 @@
 
 namespace host {
 
-/// What may lie between motor and table.
+/// What may lie between motor and table: a spring, a gap.
 inline constexpr std::array<std::string_view, 2> kConnections = {"compliance", "backlash"};
 bool is_connection(std::string_view kind);
 
-/// Compares the gap or spring that the force balance names with the other one by the motion, both fitted to the
-/// training records. The balance holds sliding motion only and sees a load that lags; a reversal shows whether by a gap
-/// or by a spring. The other one takes the place of the named one if it predicts both sets better. Nothing changes
-/// where the other one is in `absent`, where both are a group already, or where the balance names neither.
-void compare_connections_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent);
+/// Compares a spring that the force balance names with a gap by the motion, both fitted to the training records. The
+/// balance holds sliding motion only and sees a load that lags; a reversal shows whether by a gap. The gap takes the
+/// spring's place if it predicts both sets better. Not the other way round: a gap contains the spring behind it, so a
+/// spring that predicts better shows only that the fit of the gap has not ended. Nothing changes where a gap is in
+/// `absent` or in a group.
+void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent);
 
 /// Withdraws a gap or spring that the force balance names if it increases the error of the prediction from the command
 /// on held-back records, because nothing between motor and table was measured. The verdict says so.
