@@ -1,7 +1,5 @@
 #include "host/diagnose/connection.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -15,7 +13,7 @@ namespace host {
 
 namespace {
 
-/// The connection that the force balance names; empty if there is none, or if the balance did not decide.
+/// The connection that the force balance names; empty if it names neither, or if it did not decide.
 std::string named_by_balance(const Diagnosis& diagnosis) {
   const EffortScreen* screen = diagnosis.screen.get();
   if (!diagnosis.by_effort || screen == nullptr || screen->rows.steady) return {};

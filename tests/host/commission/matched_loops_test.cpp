@@ -2,10 +2,8 @@
 // how the axes then follow; and what the board holds after a refusal.
 #include "host/commission/matched_loops.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <memory>
 
