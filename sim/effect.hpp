@@ -42,6 +42,7 @@ struct ParameterInfo {
   Scale scale = Scale::unity;
   std::vector<double> starts{};  ///< of a fit, in units of `scale`; several for several local minima
   bool optional = false;         ///< may be absent from a model file
+  bool rigid_at_upper = false;   ///< at the upper bound this part of the effect no longer yields: it is absent
   std::string_view
       pair_of{};  ///< set on the one-for-both-directions form: "positive" level stands for positive/negative
 

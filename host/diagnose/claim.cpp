@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "host/compare/chance.hpp"
@@ -72,12 +71,12 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
     for (const auto& [id, value] : entry->parameters) {
       const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
       if (info == nullptr) continue;
-      const bool on_one =
-          std::ranges::any_of(std::array{info->lower, info->upper}, [info, value = value](double bound) {
-            return std::abs(bound) > kStandsForZero * std::abs(info->upper) && std::isfinite(bound) &&
-                   std::abs(value - bound) <= kNear * std::abs(bound);
-          });
-      if (on_one) found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
+      const auto is_on = [info, value = value](double bound) {
+        return std::abs(bound) > kStandsForZero * std::abs(info->upper) && std::isfinite(bound) &&
+               std::abs(value - bound) <= kNear * std::abs(bound);
+      };
+      if (is_on(info->lower) || (is_on(info->upper) && !info->rigid_at_upper))
+        found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
     }
   }
   return found;

@@ -42,7 +42,7 @@ enum class Reservation {
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Parameters of the effects in `kinds` that are at a bound of their range, "compliance: damping_ratio". A bound at
-/// zero means that this part of the effect is absent, which is allowed.
+/// zero, or where a spring is rigid, means that this part of the effect is absent, which is allowed.
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
 
 /// Positions so far from the records' travel that the effect hardly changes over it and stands in for a constant.

@@ -1,12 +1,18 @@
 #include "host/diagnose/connection.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "host/diagnose/effect_by_motion.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
+#include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/effort/second_mass_terms.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -22,56 +28,119 @@ std::string named_by_balance(const Diagnosis& diagnosis) {
   return named == kinds.end() ? std::string() : *named;
 }
 
-/// The same verdict with another connection in place of one.
-void exchange(const std::string& from, const sim::EffectEntry& to, Diagnosis& diagnosis) {
-  const auto rename_in = [&](std::vector<std::string>& kinds) { std::ranges::replace(kinds, from, to.kind); };
-  const auto exchange_in = [&](auto& candidate) {
-    rename_in(candidate.kinds);
-    if (sim::EffectEntry* entry = candidate.model.find(from)) *entry = to;
+/// A model with one connection, fitted to the motion.
+struct ByMotion {
+  sim::DriveDescription model;
+  ErrorOnSets error;
+};
+
+/// Predicts both sets better.
+bool is_better(const ErrorOnSets& one, const ErrorOnSets& other) {
+  constexpr double kBetter = 1.1;  // as of models that predict equally well
+  return kBetter * one.train.combined < other.train.combined &&
+         kBetter * one.validate.combined < other.validate.combined;
+}
+
+/// The better of two fits of one connection: alone, and beside the other effects that the balance names.
+std::optional<ByMotion> fitted_connection(const std::string& kind, const Diagnosis& diagnosis,
+                                          const sim::DriveDescription& given, const Measurements& measured) {
+  const sim::EffectInfo& effect = *sim::find_effect(kind);
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
+  const PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
+  std::optional<ByMotion> best;
+  if (std::optional<EffectByMotion> alone = fit_effect_by_motion(effect, model, measured, split))
+    best = ByMotion{alone->best.model, diagnosis.rows.error_of(alone->best.model)};
+  sim::DriveDescription others = diagnosis.screen->best().model;
+  std::erase_if(others.effects, [](const sim::EffectEntry& entry) { return is_connection(entry.kind); });
+  const std::vector<Candidate> beside = search_kinds({&effect}, others, {}, diagnosis.training, diagnosis.validation);
+  if (beside.empty()) return best;
+  ByMotion more{beside.front().model, diagnosis.rows.error_of(beside.front().model)};
+  return !best || is_better(more.error, best->error) ? std::move(more) : std::move(best);
+}
+
+/// The verdict of the balance with a gap in place of its spring. Of its other effects those remain that the model has.
+void exchange_spring(const sim::DriveDescription& with_gap, Diagnosis& diagnosis) {
+  const auto is_withdrawn = [&](const std::string& kind) { return kind != kSpring && with_gap.find(kind) == nullptr; };
+  const auto rename_in = [](std::vector<std::string>& kinds) {
+    std::ranges::replace(kinds, std::string(kSpring), std::string(kGap));
   };
-  auto exchanged = std::make_shared<EffortScreen>(*diagnosis.screen);
-  std::ranges::for_each(exchanged->chosen, exchange_in);
-  for (CertainEffect& certain : exchanged->certain) rename_in(certain.group);
-  std::ranges::for_each(exchanged->tied, rename_in);
-  diagnosis.screen = std::move(exchanged);
-  std::ranges::for_each(diagnosis.candidates, exchange_in);
-  rename_in(diagnosis.verdict.effects);
-  std::ranges::for_each(diagnosis.verdict.alternatives, rename_in);
+  const auto exchange_in = [&](std::vector<std::string>& kinds) {
+    std::erase_if(kinds, is_withdrawn);
+    rename_in(kinds);
+  };
+  auto screen = std::make_shared<EffortScreen>(*diagnosis.screen);
+  const std::vector<std::string> named = screen->best().kinds;
+  std::vector<ScreenedModel> steps;
+  std::vector<std::vector<std::string>> tied;
+  for (std::size_t step = 0; step < screen->chosen.size(); ++step) {
+    ScreenedModel& chosen = screen->chosen[step];
+    if (is_withdrawn(chosen.kinds.back())) continue;
+    exchange_in(chosen.kinds);
+    rename_in(screen->tied[step]);
+    chosen.model = with_gap;
+    steps.push_back(std::move(chosen));
+    tied.push_back(std::move(screen->tied[step]));
+  }
+  screen->chosen = std::move(steps);
+  screen->tied = std::move(tied);
+  std::erase_if(screen->certain,
+                [&](const CertainEffect& certain) { return std::ranges::all_of(certain.group, is_withdrawn); });
+  for (CertainEffect& certain : screen->certain) rename_in(certain.group);
+
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  std::vector<JudgedCandidate> candidates;
+  for (JudgedCandidate& candidate : diagnosis.candidates) {
+    const bool is_named = candidate.kinds == named;
+    if (is_named) {
+      candidate.model = with_gap;
+      exchange_in(candidate.kinds);
+    } else {
+      const bool is_beside_withdrawn = std::ranges::any_of(
+          named, [&](const std::string& kind) { return is_withdrawn(kind) && holds_all(candidate.kinds, {kind}); });
+      rename_in(candidate.kinds);
+      if (sim::EffectEntry* spring = candidate.model.find(kSpring)) *spring = *with_gap.find(kGap);
+      if (is_beside_withdrawn || candidate.kinds == screen->best().kinds) {
+        verdict.probability_other += candidate.probability;
+        continue;
+      }
+    }
+    candidates.push_back(std::move(candidate));
+  }
+  diagnosis.candidates = std::move(candidates);
+  diagnosis.screen = std::move(screen);
+  diagnosis.best = with_gap;
+  exchange_in(verdict.effects);
+  std::ranges::for_each(verdict.alternatives, rename_in);
 }
 
 }  // namespace
 
-bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
+bool is_connection(std::string_view kind) { return kind == kSpring || kind == kGap; }
 
-void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const std::vector<std::string>& absent) {
-  const std::string spring(kConnections[0]), gap(kConnections[1]);
-  if (named_by_balance(diagnosis) != spring) return;
-  const auto holds_gap = [&](const std::vector<std::string>& kinds) {
-    return std::ranges::find(kinds, gap) != kinds.end();
+void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const sim::DriveDescription& given,
+                                       const Measurements& measured, const std::vector<std::string>& absent) {
+  if (named_by_balance(diagnosis) != kSpring) return;
+  const auto holds_gap = [](const std::vector<std::string>& kinds) {
+    return std::ranges::find(kinds, kGap) != kinds.end();
   };
   if (holds_gap(absent) || std::ranges::any_of(diagnosis.screen->tied, holds_gap)) return;
-  sim::DriveDescription rest = diagnosis.screen->best().model;
-  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == spring; });
-  const std::vector<Candidate> fitted = search_kinds({sim::find_effect(spring), sim::find_effect(gap)}, rest, {},
-                                                     diagnosis.training, diagnosis.validation);
-  const auto of = [&](const std::string& kind) {
-    return std::ranges::find(fitted, std::vector{kind}, &Candidate::kinds);
+  const auto fitted = [&](std::string_view kind) {
+    return fitted_connection(std::string(kind), diagnosis, given, measured);
   };
-  const auto with_spring = of(spring), with_gap = of(gap);
-  if (with_gap == fitted.end()) return;
-  const Candidate rival =
-      with_spring == fitted.end() ? judged({}, rest, rest, diagnosis.training, diagnosis.validation) : *with_spring;
-  constexpr double kBetter = 1.1;  // as of models that predict equally well
-  if (kBetter * with_gap->training.combined >= rival.training.combined ||
-      kBetter * with_gap->validation.combined >= rival.validation.combined)
-    return;
-  const sim::EffectEntry& entry = *with_gap->model.find(gap);
-  if (entry.at("gap") < least_gap(rest.data)) return;
-  exchange(spring, entry, diagnosis);
-  diagnosis.best = with_gap->model;
+  const std::optional<ByMotion> gap = fitted(kGap);
+  if (!gap || gap->model.find(kGap)->at("gap") < least_gap(gap->model.data)) return;
+  const std::optional<ByMotion> spring = fitted(kSpring);
+  const ErrorOnSets balance = diagnosis.rows.error_of(diagnosis.screen->best().model);
+  if (!is_better(gap->error, balance) || (spring && !is_better(gap->error, spring->error))) return;
   diagnosis.verdict.explanation +=
       " While the axis slides, a gap and a spring hardly differ. At reversals they do, and a gap predicts the motion "
       "better.";
+  for (const std::string& kind : diagnosis.screen->best().kinds)
+    if (kind != kSpring && gap->model.find(kind) == nullptr)
+      diagnosis.verdict.explanation +=
+          fmt::format(" {}, found beside the spring, does not improve the prediction with a gap and is withdrawn.",
+                      sim::find_effect(kind)->title);
+  exchange_spring(gap->model, diagnosis);
 }
 
 void take_back_denied_connection(Diagnosis& diagnosis) {

@@ -299,7 +299,7 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   diagnosis.timed = std::move(timed);
   diagnosis.table = table;
   const bool only_the_motor = table && table->empty();
-  if (only_the_motor) compare_spring_with_gap_by_motion(diagnosis, absent);
+  if (only_the_motor) compare_spring_with_gap_by_motion(diagnosis, given, measured, absent);
   take_figures(given, diagnosis);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.verdict.explanation += said_by_the_motion(diagnosis);

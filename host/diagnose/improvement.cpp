@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
+#include "host/diagnose/effect_by_motion.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/effort/effort_terms.hpp"
@@ -235,41 +235,22 @@ Addition curve_added(const sim::DriveDescription& model, const std::string& over
 }
 
 Addition effect_added(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
-  const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
-  const PreparedSets split = split_sets(model, training, validation);
+  const PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
   if (std::optional<Addition> by_effort = add_by_effort(model, kind, split)) return *by_effort;
-  PreparedSets sets;
-  std::vector<Candidate> found;
-  const auto search = [&](PreparedSets fitted) {
-    sets = std::move(fitted);
-    if (!sets.moves_enough)
-      throw Failure(ExitCode::refused, fmt::format("{}: fitting and validating it needs {:.1f} s more motion", kind,
-                                                   std::max(0.1, missing_motion_s(sets))));
-    if (!is_applicable(*info, sets.base, sets.training))
-      throw Failure(ExitCode::usage,
-                    fmt::format("{}: cannot be added: the model already has it (perhaps in another form) or excludes "
-                                "it, or these records lack the channel that shows it",
-                                kind));
-    SearchEffort effort = SearchEffort{}.over(sets.window_s);
-    effort.nominal = &model;
-    found = search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, effort);
-    if (found.empty())
-      throw Failure(
-          ExitCode::refused,
-          fmt::format("{}: no starting value of the fit lowers the error; these records do not show the effect. {}",
-                      kind, info->separate_by));
-  };
-  search(with_base_fitted(split));
-  if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)))
-    search(prepare_sets(model, training, validation, rough_window_s(training),
-                        rough_measure(found.front().model, training, validation)));
+  std::optional<EffectByMotion> fitted = fit_effect_by_motion(*info, model, measured, split);
+  if (!fitted)
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("{}: no starting value of the fit lowers the error; these records do not show the effect. {}", kind,
+                    info->separate_by));
+  PreparedSets& sets = fitted->sets;
   Addition addition;
   addition.held_back = sets.held_back;
-  renew_floors(sets.training, found.front().model);
-  renew_floors(sets.validation, found.front().model);
-  addition.judged = judge_candidate(found.front(), sets.training, sets.validation,
+  renew_floors(sets.training, fitted->best.model);
+  renew_floors(sets.validation, fitted->best.model);
+  addition.judged = judge_candidate(fitted->best, sets.training, sets.validation,
                                     error_of(sim::Drive(sets.base), sets.validation), 1);
   addition.estimates = document_fit(addition.judged.model, sets.training);
   return addition;

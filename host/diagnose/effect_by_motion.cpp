@@ -1,0 +1,46 @@
+#include "host/diagnose/effect_by_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/diagnosis.hpp"
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo& effect,
+                                        const sim::DriveDescription& nominal) {
+  if (!sets.moves_enough)
+    throw Failure(ExitCode::refused, fmt::format("{}: fitting and validating it needs {:.1f} s more motion",
+                                                 effect.kind, std::max(0.1, missing_motion_s(sets))));
+  if (!is_applicable(effect, sets.base, sets.training))
+    throw Failure(ExitCode::usage,
+                  fmt::format("{}: cannot be added: the model already has it (perhaps in another form) or excludes it, "
+                              "or these records lack the channel that shows it",
+                              effect.kind));
+  SearchEffort effort = SearchEffort{}.over(sets.window_s);
+  effort.nominal = &nominal;
+  std::vector<Candidate> found = search_kinds({&effect}, sets.base, {}, sets.training, sets.validation, {}, effort);
+  if (found.empty()) return {};
+  return EffectByMotion{std::move(sets), std::move(found.front())};
+}
+
+}  // namespace
+
+std::optional<EffectByMotion> fit_effect_by_motion(const sim::EffectInfo& effect, const sim::DriveDescription& model,
+                                                   const Measurements& measured, const PreparedSets& split) {
+  std::optional<EffectByMotion> fitted = fitted_on(with_base_fitted(split), effect, model);
+  if (!fitted || !is_rough(error_of(sim::Drive(fitted->best.model), fitted->sets.validation))) return fitted;
+  const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
+  return fitted_on(prepare_sets(model, training, validation, rough_window_s(training),
+                                rough_measure(fitted->best.model, training, validation)),
+                   effect, model);
+}
+
+}  // namespace host
