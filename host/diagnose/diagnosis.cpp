@@ -219,6 +219,14 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (progress) progress(1.0);
     return diagnosis;
   };
+  // What the motion adds to the effects of the regression.
+  const auto completed = [&](Diagnosis diagnosis) {
+    PreparedSets on_top = split;
+    on_top.base = diagnosis.best;
+    Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis.best);
+    const bool adds = !further.rough && further.verdict.status == Status::missing;
+    return adds ? together(model, std::move(diagnosis), std::move(further)) : diagnosis;
+  };
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
   // If the motion is not explained, use the regression's answer.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
@@ -242,19 +250,19 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
                                    : goes_beyond(*over_long_windows, *screen) ||
                                          explains_what_the_balance_does_not(*over_long_windows, *diagnosis);
       if (is_better) return *std::move(over_long_windows);
-      if (!tells) return *std::move(diagnosis);
-      PreparedSets on_top = split;
-      on_top.base = diagnosis->best;
-      Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);
-      const bool adds = !further.rough && further.verdict.status == Status::missing;
-      return adds ? together(model, *std::move(diagnosis), std::move(further)) : *std::move(diagnosis);
+      return tells ? completed(*std::move(diagnosis)) : *std::move(diagnosis);
     }
   }
   if (!by_short_windows) {
     over_long_windows = search(with_base_fitted(split), model);
     if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
-      if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
+      if (std::optional<Diagnosis> diagnosis = by_effort(true)) {
+        // With the effects of the balance, the motion may no longer be limited by model error.
+        const bool ends_here = screen->chosen.empty() || screen->rows.steady;
+        return ends_here || !may_be_completed(*diagnosis, split.validation) ? *std::move(diagnosis)
+                                                                            : completed(*std::move(diagnosis));
+      }
   }
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
