@@ -62,8 +62,7 @@ std::vector<bool> find_standing(const std::vector<double>& x, double resolution,
   for (std::size_t k = 1; k <= x.size(); ++k) {
     if (k < x.size() && std::abs(x[k] - x[begin]) <= 0.25 * resolution) continue;
     if (k - begin >= shortest) {
-      // After its first sample on a count and before its last ones the axis may still move, unless the record ends
-      // there.
+      // The axis may still move at the first sample on a count and at the last ones, unless the record ends there.
       const std::size_t end = k < x.size() ? k - std::min(start, k - begin) : k;
       for (std::size_t row = begin == 0 ? 0 : begin + 1; row < end; ++row) standing[row] = true;
     }
