@@ -19,7 +19,7 @@ namespace {
                             path, what));
 }
 
-/// The candidates that a diagnosis could not separate.
+/// Takes the candidates that a diagnosis could not tell apart.
 void take_diagnosis(const nlohmann::json& document, Beliefs& beliefs) {
   const auto effects = document.at("verdict").at("effects").get<std::vector<std::string>>();
   if (document.at("verdict").at("status") != "ambiguous") return;
