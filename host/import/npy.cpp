@@ -91,7 +91,7 @@ class NpyReader {
     by_columns_ = after("'fortran_order':").starts_with("True");
   }
 
-  /// The text after a key of the header, without leading blanks.
+  /// The text after a key in the header, without leading blanks.
   std::string_view after(std::string_view key) const {
     const std::size_t at = header_.find(key);
     if (at == std::string_view::npos)
@@ -101,7 +101,7 @@ class NpyReader {
     return rest;
   }
 
-  /// Takes a text in single quotes that begins `rest`.
+  /// Removes the text in single quotes at the start of `rest` and returns it.
   std::string_view take_quoted(std::string_view& rest) const {
     const std::size_t begin = rest.find('\''), end = rest.find('\'', begin + 1);
     if (begin == std::string_view::npos || end == std::string_view::npos) fail(path_, "a damaged header");
