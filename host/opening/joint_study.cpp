@@ -1,4 +1,4 @@
-// Joints of robots for which the log does not say whether they turn or slide.
+// Joints of robots, for which the log does not say whether they turn or slide.
 #include <fmt/format.h>
 
 #include "host/import/joint_states.hpp"
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// The data sheet determines whether a joint turns or slides; without one it is assumed to turn.
+/// The data sheet determines whether a joint turns or slides. Without a data sheet, the joint is assumed to turn.
 void AxisStudy::settle_joint() {
   const bool slides = hints_.sheet && hints_.sheet->kind != sim::DriveKind::rotary;
   for (NamedChannel& channel : channels_) {
