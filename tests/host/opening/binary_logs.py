@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Binary logs and logs of flight controllers, from independent writers (log_files.py): binary_logs.py AXISTOOL
 
-Every channel must be read with its values, its unit and the period of its rows. The program must ask for information that
-the file lacks."""
+Every channel must be read with its values, its unit and the period of its rows. The program must ask for information
+that the file lacks."""
 
 import json
 import math

@@ -2,8 +2,8 @@
 """Damaged and hostile binary logs: hostile_logs.py AXISTOOL [TRIES [SEED]]
 
 The program must read every file or reject it with exit code 9, without a signal, a gigabyte of memory, a long delay or
-written files. The files are: valid files of every kind from independent writers (log_files.py), cut off at TRIES lengths,
-which must be rejected; the same with TRIES random changes each; and hostile files."""
+written files. The files are: valid files of every kind from independent writers (log_files.py), cut off at TRIES
+lengths, which must be rejected; the same with TRIES random changes each; and hostile files."""
 
 import os
 import random

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Twenty layouts of one made motion, opened by the program: layouts.py AXISTOOL [FOLDER]
 
-Each layout has its own delimiter, decimal sign, preamble, language, units, encoding and time. Right: every quantity in the
-log is taken with its factor (within 0.5 %), and information that the log lacks is in `missing` or `asks`. Silently wrong: a
-wrong factor or quantity without a question and with a confidence of 90 % or more. At least 19 layouts must be right, and
-none silently wrong.
+Each layout has its own delimiter, decimal sign, preamble, language, units, encoding and time. Right: every quantity in
+the log is taken with its factor (within 0.5 %), and information that the log lacks is in `missing` or `asks`. Silently
+wrong: a wrong factor or quantity without a question and with a confidence of 90 % or more. At least 19 layouts must be
+right, and none silently wrong.
 """
 import json
 import math

@@ -2,9 +2,9 @@
 """Logs of real controllers, opened by the program without a map: real_logs.py AXISTOOL DATA
 
 Prints for each file the number of channels in it, of those taken with a question, of those taken correctly without a
-question, and of wrong ones. The sources of the files (the README and the converter beside each) determine what is correct:
-stamps in seconds or in milliseconds, and speeds in rpm. Nothing else may be taken without a question. If no channel of a
-file is taken, the program must name the missing information.
+question, and of wrong ones. The sources of the files (the README and the converter beside each) determine what is
+correct: stamps in seconds or in milliseconds, and speeds in rpm. Nothing else may be taken without a question. If no
+channel of a file is taken, the program must name the missing information.
 """
 import json
 import math

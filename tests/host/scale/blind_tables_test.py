@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Machines with a scale on the table that are unknown to the program (table_machine.py). Each has up to three of backlash,
-compliance, pitch error, cyclic errors of scale and motor encoder, and thermal growth, or none. Seeds are printed. The
-argument is the number of machines to try; each is diagnosed with and without its scale. Without the argument, two machines
-are tried. One of them has a gap and a spring, and other pairs of gap and spring have the same lost motion. Three more are
-diagnosed without a scale: one for which the torque alone indicates a gap, but the motion excludes it; one with a spring
-that the friction of one side deflects, which looks like a gap; and one with a rigid gap that looks like a spring in the
-torque."""
+"""Machines with a scale on the table that are unknown to the program (table_machine.py). Each has up to three of
+backlash, compliance, pitch error, cyclic errors of scale and motor encoder, and thermal growth, or none. Seeds are
+printed. The argument is the number of machines to try; each is diagnosed with and without its scale. Without the
+argument, two machines are tried. One of them has a gap and a spring, and other pairs of gap and spring have the same
+lost motion. Three more are diagnosed without a scale: one for which the torque alone indicates a gap, but the motion
+excludes it; one with a spring that the friction of one side deflects, which looks like a gap; and one with a rigid gap
+that looks like a spring in the torque."""
 
 import json
 import math

@@ -1,6 +1,6 @@
-"""A drive with a table, with independent physics: motor and table connected by a spring, a gap or both, Coulomb friction on
-both sides, a screw with pitch errors, a motor encoder and a scale with errors of their own, and thermal growth. Integrated
-here, in N, kg, mm and s, without code of the program."""
+"""A drive with a table, with independent physics: motor and table connected by a spring, a gap or both, Coulomb
+friction on both sides, a screw with pitch errors, a motor encoder and a scale with errors of their own, and thermal
+growth. Integrated here, in N, kg, mm and s, without code of the program."""
 
 import math
 import random
