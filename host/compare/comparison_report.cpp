@@ -302,7 +302,7 @@ Report comparison_report(std::span<const ComparedModel> models, const Focus& foc
                 fmt::format("{} · {}", titles, names));
   report.verdict(verdict_of(models));
 
-  report.section("How far off");
+  report.section("Size of the error");
   if (models.size() == 1) {
     Facts facts;
     facts.items = {{"error over floor", format_value(comparison.error.combined)},

@@ -111,7 +111,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const std::string& model_nam
   report.verdict(verdict_block(diagnosis, found));
   add_found(report, found, diagnosis.verdict.status == Status::ambiguous);
   if (diagnosis.verdict.status == Status::unexplained) add_unexplained(report, diagnosis);
-  report.section("How large the error is", "");
+  report.section("Size of the error", "");
   add_errors(report, diagnosis);
   if (!diagnosis.candidates.empty()) {
     report.section("What was tried");

@@ -75,7 +75,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
     fixed[static_cast<std::size_t>(worst)] = true;
     beliefs[static_cast<std::size_t>(worst)].value *= kHardlyAny;
     if (held != nullptr && static_cast<std::size_t>(worst) < base.size())
-      held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
+      held->push_back(fmt::format("{} would be negative", base[static_cast<std::size_t>(worst)].kind));
   }
   if (!theta.allFinite()) return false;
   out.residual = effort_ - phi * theta;

@@ -174,14 +174,14 @@ void find_wrong_scales(const Record& record, const sim::DriveDescription& model,
   if (off(inertia) && alike(inertia, level)) {
     const double factor = std::sqrt(inertia * level);
     faults.add(LogFaultKind::command_scale, command, record.t_s.front(), factor,
-               fmt::format("inertia and friction both come out {:.4g} times the model's: the column has the wrong unit "
+               fmt::format("inertia and friction are both {:.4g} times the model's: the column has the wrong unit "
                            "(or the model's gains are wrong); divide it by {:.4g}",
                            factor, factor));
   } else if (record.has_position() != record.has_speed() && off(inertia) && alike(inertia, viscous) &&
              alike(level, 1.0)) {
     faults.add(LogFaultKind::position_scale, record.has_position() ? &Record::x : &Record::w, record.t_s.front(),
                1.0 / inertia,
-               fmt::format("inertia and viscous friction come out {:.4g} times the model's, Coulomb friction does not: "
+               fmt::format("inertia and viscous friction are {:.4g} times the model's, Coulomb friction is not: "
                            "the column has the wrong unit; multiply it by {:.4g}",
                            inertia, inertia));
   }

@@ -94,10 +94,11 @@ void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data
 
 void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data) {
   if (std::isfinite(estimate.condition_number) && estimate.inertia.ci95[1] < 0.0)
-    throw Failure(ExitCode::refused,
-                  fmt::format("the inertia comes out negative ({:.4g}): the axis accelerates against its command. The "
-                              "sign of the command or of the motion is inverted, or channels are swapped",
-                              estimate.inertia.value));
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("the estimated inertia is negative ({:.4g}): the axis accelerates against its command. The "
+                    "sign of the command or of the motion is inverted, or channels are swapped",
+                    estimate.inertia.value));
   const bool determined = std::isfinite(estimate.condition_number) && estimate.inertia.ci95[0] > 0.0;
   if (determined) return;
   throw Failure(

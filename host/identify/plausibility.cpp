@@ -103,8 +103,8 @@ class Examiner {
       const double reach = std::hypot(half_width(*cosine), half_width(*sine));
       if (reach > amplitude)
         doubt(effect.kind, true,
-              "{}: the amplitude of order {:g} is {:.3g} ± {:.2g}: it may be zero, and its phase anything", effect.kind,
-              term.order, amplitude, reach);
+              "{}: the amplitude of order {:g} is {:.3g} ± {:.2g}: it may be zero, so its phase is not determined",
+              effect.kind, term.order, amplitude, reach);
     }
   }
 

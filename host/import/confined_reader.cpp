@@ -199,9 +199,10 @@ void confine(unsigned seconds) {
   try {
     sender.send(read(path));
   } catch (const std::bad_alloc&) {
-    sender.part(Part::failure, {fmt::format("{}: takes more than {} MiB to read, the most that a log may: damaged, or "
-                                            "to be saved with fewer rows",
-                                            path, kMostMemory / kMebibyte)});
+    sender.part(Part::failure,
+                {fmt::format("{}: needs more than {} MiB of memory, the limit for a log: it is damaged, or "
+                             "must be saved with fewer rows",
+                             path, kMostMemory / kMebibyte)});
   } catch (const std::exception& failure) {
     sender.part(Part::failure, {failure.what()});
   }

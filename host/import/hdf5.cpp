@@ -184,7 +184,7 @@ class Hdf5Reader {
     if (rank < 1 || rank > 2 || lies_elsewhere(set) || (fields > 1 && rank == 2 && sizes[1] > 1)) {
       leave(name, rank < 1 ? "a single value" : shape,
             lies_elsewhere(set) ? "lies in another file; copy it into this one (h5repack)"
-                                : "is no table of rows and columns; name another");
+                                : "is not a table of rows and columns; name another");
       return;
     }
     announced_ += static_cast<double>(sizes[0]) * static_cast<double>(sizes[1]) * fields;

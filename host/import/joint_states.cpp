@@ -105,9 +105,10 @@ bool decode_joint_message(std::string_view bytes, JointMessage& message) {
 void JointStates::add(const std::string& topic, std::string_view message, std::int64_t received_ns) {
   JointMessage read;
   if (!decode_joint_message(message, read))
-    throw Failure(ExitCode::bad_input, fmt::format("{}: message {} of topic {} is no {} in CDR: damaged, or packed; "
-                                                   "unpack the bag with ros2 bag convert, or save it again",
-                                                   path_, messages_ + 1, topic, kJointStateType));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: message {} of topic {} is not a {} in CDR: damaged or compressed; "
+                              "unpack the bag with ros2 bag convert, or save it again",
+                              path_, messages_ + 1, topic, kJointStateType));
   numbers_ += 4 * read.names.size();
   if (numbers_ > kMostLogNumbers)
     throw Failure(ExitCode::bad_input,

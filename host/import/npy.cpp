@@ -66,9 +66,9 @@ class NpyReader {
     if (rows_ > kMostLogNumbers / std::max<std::size_t>(1, columns_ * fields_.size()))
       fail(path_, fmt::format("more than {} numbers, the most that a log may have; save fewer rows or columns",
                               kMostLogNumbers));
-    if (rows_ == 0 || row == 0) fail(path_, "the array is empty; save one that holds a log");
+    if (rows_ == 0 || row == 0) fail(path_, "the array is empty; save one that contains a log");
     if (bytes_.size() / row < rows_)
-      fail(path_, fmt::format("the file ends within its array of {} x {} numbers: it was cut; save it again", rows_,
+      fail(path_, fmt::format("the file ends within its array of {} x {} numbers: it was cut off; save it again", rows_,
                               columns_));
     Log log;
     log.path = path_;

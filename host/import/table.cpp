@@ -98,9 +98,9 @@ class TableReader {
       keep_preamble();
       ++preamble;
     }
-    if (trim_blanks(line_).empty()) fail("no rows; name a file that holds a log");
+    if (trim_blanks(line_).empty()) fail("no rows; name a file that contains a log");
     if (preamble > 0)
-      log_.header["imported_preamble"] = fmt::format("{} lines in front of the table were left out", preamble);
+      log_.header["imported_preamble"] = fmt::format("{} lines before the table were left out", preamble);
   }
 
   void keep_preamble() {
@@ -123,7 +123,7 @@ class TableReader {
     for (std::size_t k = 0; k < fields_.size(); ++k) log_.columns[k].name = fields_[k];
     constexpr int kMostHeadings = 4;
     for (int k = 0; k < kMostHeadings; ++k) {
-      if (!next_line()) fail("no rows follow the headings; name a file that holds a log");
+      if (!next_line()) fail("no rows follow the headings; name a file that contains a log");
       while (is_remark(line_) && next_line()) {
       }
       layout_.split(line_, fields_);

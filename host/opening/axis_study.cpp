@@ -60,7 +60,7 @@ const NamedChannel* AxisStudy::pick(Quantity quantity, bool reference, bool seco
   std::string names;
   for (const NamedChannel* channel : equal) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", quoted(*channel));
-    leave(*channel, fmt::format("one of several that may be the {}", quantity_name(quantity)), 0.3);
+    leave(*channel, fmt::format("one of several possible channels for the {}", quantity_name(quantity)), 0.3);
   }
   ask(fmt::format("{}which is the {}: {}? Name it by --map", axis_->name.empty() ? "" : axis_->name + ": ",
                   quantity_name(quantity), names));
@@ -88,7 +88,7 @@ void AxisStudy::take(const NamedChannel& channel, Decision decision) {
   const bool is_open = may_slide_ && channel.name.sliding_unit;  // all channels of a joint share one question
   if (is_open) out.sure = std::min(out.sure, kAssumed);
   if (decision.sure < kSureEnough && !is_open)
-    ask(fmt::format("{}{}: {} ({})? Else say --map {}=…", axis_->name.empty() ? "" : axis_->name + ": ",
+    ask(fmt::format("{}{}: {} ({})? If not, give --map {}=…", axis_->name.empty() ? "" : axis_->name + ": ",
                     quoted(channel), mapping_text(mapping), decision.why, decision.column));
   axis_->mappings.push_back(std::move(mapping));
 }
@@ -257,14 +257,14 @@ void AxisStudy::settle_table_position() {
   const double size = by_unit ? by_unit->factor : neat ? neat->value : 0.0;
   if (!(size > 0.0) || std::abs(std::abs(shown) / size - 1.0) > kSameWay) {
     leave(*table,
-          fmt::format("the table's position: a step of it is {:.6g} mm by {}; say --map x2_mm={}*MM_PER_STEP", shown,
-                      quoted(*position_), source_text(log_.columns[table->column].name)),
+          fmt::format("the table's position: its step is {:.6g} mm according to {}; give --map x2_mm={}*MM_PER_STEP",
+                      shown, quoted(*position_), source_text(log_.columns[table->column].name)),
           0.6);
     return;
   }
   take(*table, {"x2_mm", std::copysign(size, shown), 0.0, by_unit ? kSureByUnit : kSureByPhysics,
-                fmt::format("the table by a sensor of its own, {}{}", by_unit ? by_unit->why : neat->words,
-                            shown < 0.0 ? ", counting the other way" : "")});
+                fmt::format("the table by its own sensor, {}{}", by_unit ? by_unit->why : neat->words,
+                            shown < 0.0 ? ", with the opposite sign" : "")});
 }
 
 void AxisStudy::settle_speed() {
@@ -381,7 +381,7 @@ void AxisStudy::leave_rest() {
     else if (is_constant(column.values))
       leave(channel, "never changes", 0.9);
     else if (channel.name.quantity == Quantity::unknown)
-      leave(channel, "not understood; kept out", 0.0);
+      leave(channel, "not recognised; left out", 0.0);
     else
       leave(channel,
             fmt::format("{}{}; not needed", channel.name.is_reference ? "wanted " : "",

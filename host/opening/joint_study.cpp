@@ -37,7 +37,7 @@ void AxisStudy::ask_of_joint() {
       sliding += fmt::format("{}{}", sliding.empty() ? "" : ",", mapping_text(other));
     }
   if (!turning.empty())
-    ask(fmt::format("{}does the joint turn (rad, Nm)? The bag does not tell: {}. If it slides (m, N), say --map {}",
+    ask(fmt::format("{}does the joint turn (rad, Nm)? The bag does not say: {}. If it slides (m, N), give --map {}",
                     axis_->name.empty() ? "" : axis_->name + ": ", turning, sliding));
 }
 

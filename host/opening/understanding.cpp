@@ -130,7 +130,7 @@ class Understander {
     names_[at].quantity = Quantity::time;
     if (channel.sure < kSureEnough && !channel.taken_as.empty())
       found_.asks.push_back(
-          fmt::format("times in {}: {}? Else give --period SECONDS", source_text(stamps_), channel.why));
+          fmt::format("times in {}: {}? If not, give --period SECONDS", source_text(stamps_), channel.why));
   }
 
   static bool rises(const LogColumn& column) {
@@ -166,14 +166,14 @@ class Understander {
       OpenedChannel& out = found_.channels[channel.column];
       out.why =
           channel.name.quantity == Quantity::unknown
-              ? "not understood; kept out"
+              ? "not recognised; left out"
               : fmt::format("{}, but its name does not assign it to an axis", quantity_name(channel.name.quantity));
       const bool effort = channel.name.quantity == Quantity::current || channel.name.quantity == Quantity::torque ||
                           channel.name.quantity == Quantity::voltage || channel.name.quantity == Quantity::force;
       if (effort && !is_constant(log_.columns[channel.column].values))
-        found_.asks.push_back(
-            fmt::format("the axis of '{}' ({}), which its name does not tell: give --map with the columns of one axis",
-                        out.name, quantity_name(channel.name.quantity)));
+        found_.asks.push_back(fmt::format(
+            "the axis of '{}' ({}), which its name does not contain: give --map with the columns of one axis", out.name,
+            quantity_name(channel.name.quantity)));
     }
     axes_.erase(rest);
   }

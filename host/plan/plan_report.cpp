@@ -39,7 +39,7 @@ Verdict verdict_block(const Plan& plan, const std::string& run_file) {
 void add_pairs(Report& report, const Plan& plan) {
   Table table;
   table.title = "Pair by pair";
-  table.headings = {"pair", "odds expected if it is the first", "if it is the second", "by hand"};
+  table.headings = {"pair", "expected odds if it is the first", "if it is the second", "by hand"};
   for (const PairOutlook& pair : plan.pairs)
     table.rows.push_back(
         {fmt::format("{} or {}", rival_name(plan.rivals[pair.a].kinds), rival_name(plan.rivals[pair.b].kinds)),
