@@ -49,7 +49,7 @@ double probability_of_luck(const SetError& before, const SetError& after, std::s
   for (const double gain : gains) observed += gain;
   if (!(observed > 0.0)) return 1.0;
   std::mt19937 random(1);
-  int as_good = 1;  // what was observed is one of the possible signs
+  int as_good = 1;  // the observed signs are one of the possible combinations
   for (int draw = 0; draw < kSigns; ++draw) {
     double sum = 0.0;
     std::uint_fast32_t bits = 0;

@@ -5,17 +5,18 @@
 
 namespace host {
 
-/// Probability, by a bootstrap over blocks of `block` consecutive windows, that `after` is better than `before` on
-/// records of the same kind: the share of resampled sets in which the fitted error decreases. Errors of neighbouring
-/// windows belong to the same motion. Both errors must come from the same set.
+/// Probability that `after` is better than `before` on records of the same kind: the share of resampled sets in which
+/// the fitted error decreases. Bootstrap over blocks of `block` consecutive windows, because neighbouring windows
+/// belong to the same motion. Both errors must come from the same set.
 double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block = 10,
                                  double common_square = kCommonSquare);
 
-/// Length of independent blocks, s: each prediction restarts from the measurement, so errors do not carry over.
+/// Length of independent blocks, s. Each prediction restarts from the measurement, so errors do not carry over.
 inline constexpr double kLuckBlock_s = kWindow_s;
 
 /// p-value of the best of `tried` candidates: probability of a gain as large as that of `after` by chance.
-/// Randomisation test over the signs of the blocks' gains, times the number tried (Bonferroni), at most 1.
+/// Randomisation test over the signs of the blocks' gains, times the number of candidates tried (Bonferroni), at most
+/// 1.
 double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, std::size_t block,
                            double common_square = kCommonSquare);
 

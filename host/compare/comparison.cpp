@@ -107,9 +107,9 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
   return sum / static_cast<double>(window.length);
 }
 
-/// A diverging model has the largest error, which is still a number.
+/// A diverging model gets the largest error, which is a finite number.
 double bounded(double square, double floor) {
-  constexpr double kRunAway = 1e6;  // floors
+  constexpr double kRunAway = 1e6;  // noise floors
   const double most = kRunAway * kRunAway * floor * floor;
   return square < most ? square : most;
 }

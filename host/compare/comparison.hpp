@@ -1,4 +1,4 @@
-// Records and noise floors for comparing models, and the error measure.
+// Records and noise floors with which models are compared, and the error measure.
 #pragma once
 
 #include <memory>
@@ -12,27 +12,27 @@ namespace host {
 
 /// Measure of comparison.
 enum class Measure {
-  motion,  ///< predicted against measured travel and speed
-  effort   ///< inverse model's torque or force against the motor's; for drives with an inverse
+  motion,  ///< predicted and measured travel and speed
+  effort   ///< torque or force of the inverse model and of the motor; needs an inverse
 };
 
-/// A record with the floor of each of its windows.
+/// A record with the noise floor of each of its windows.
 struct ComparedRecord {
   PreparedRecord prepared;
   ErrorFloor floor;
   std::shared_ptr<const EffortRecord> effort = nullptr;  ///< if the measure is torque or force
 };
 
-/// Three floors: a single late impact or breakaway must not outweigh all windows that fit.
+/// Three noise floors squared. A single late impact or breakaway must not outweigh all windows that fit.
 inline constexpr double kCommonSquare = 9.0;
 
-/// The records of one purpose (training, or validation).
+/// The records for one purpose (training or validation).
 struct RecordSet {
   std::vector<ComparedRecord> records;
   Measure measure = Measure::motion;
   std::size_t stride = 1;  ///< uses every stride-th window; more than 1 makes a search faster
-  /// Squared error over floor squared up to which a window counts in full in a fit; beyond, its weight grows as the
-  /// logarithm. At least three floors.
+  /// In a fit, a window has full weight up to this squared error over squared noise floor. Above it, its contribution
+  /// grows as the logarithm. At least kCommonSquare.
   double common_square = kCommonSquare;
 
   std::size_t used_windows() const;
@@ -40,46 +40,47 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
-/// The earliest time stamp of all: time origin of effects that change with time, whatever the logger's clock.
+/// The earliest time stamp of all records: the time origin of effects that change with time.
 double first_stamp_s(const RecordSet& set);
 
-/// Integrator steps of one pass of a model over the windows in use: one per sample, more if masses oscillate within a
-/// sample.
+/// Integrator steps for one pass of a model over the windows in use: one per sample, or more if masses oscillate within
+/// a sample.
 double steps_of(const sim::Drive& drive, const RecordSet& set);
 
-/// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
-/// If torque or force is the measure, only windows remain in which the axis slides throughout.
+/// Prepares records and computes their noise floors with `reference`, the best known model. Keeps references to the
+/// records. If the measure is torque or force, only windows in which the axis slides throughout remain.
 RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
                      double window_s = kWindow_s, Measure measure = Measure::motion);
 
-/// The same windows, compared by their motion.
+/// The same windows with the motion as measure.
 RecordSet by_motion(const RecordSet& set, const sim::DriveDescription& reference);
 
-/// Recomputes the floors of the windows in use with a better model, and the common error: if most windows of
-/// `reference` lie far above their floors, as on a real machine, three times their median error counts as common.
+/// Recomputes the noise floors of the windows in use with a better model, and `common_square`. If most errors of
+/// `reference` are far above their noise floors, as on a real machine, windows have full weight up to three times the
+/// median error.
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
 
 /// Mean over the windows and channels of (error/floor)^2 of one window.
 struct WindowScore {
   std::size_t record;
   std::size_t window;
-  double x = 0.0;  ///< mean squared error of the channel over its floor squared; 0 where the record lacks it
+  double x = 0.0;  ///< mean squared error over squared noise floor; 0 if the record lacks the channel
   double w = 0.0;
-  double effort = 0.0;  ///< the same for torque or force, if that is the measure
+  double effort = 0.0;  ///< the same for torque or force, if these are the measure
 
-  /// Sum over all channels, each with its weight in a fit.
+  /// Sum over all channels with their weights in a fit.
   double weighed(double common_square) const;
 };
 
 /// RMS errors of a model on a record set.
 struct SetError {
-  double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
-  double robust = 0.0;    ///< the same with outlying windows weighted by the logarithm: the objective of a fit
+  double combined = 0.0;  ///< RMS of error over noise floor, all windows and channels; about 1 if perfect
+  double robust = 0.0;    ///< the same with less weight for outlying windows: the objective of a fit
   double x_rms = 0.0;     ///< mm or m
   double w_rms = 0.0;     ///< rad/s or m/s
-  double x_floor = 0.0;   ///< RMS of the windows' floors
+  double x_floor = 0.0;   ///< RMS of the windows' noise floors
   double w_floor = 0.0;
-  double effort_rms = 0.0;  ///< Nm or N, if torque or force is the measure; then the others are zero
+  double effort_rms = 0.0;  ///< Nm or N, if torque or force is the measure; x and w are then zero
   double effort_floor = 0.0;
   std::vector<WindowScore> windows;
 };
@@ -89,10 +90,11 @@ double weighed_square(double square, double common_square);
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set);
 
-/// Measured channels of a record in this measure.
+/// Number of measured channels of a record in this measure.
 std::size_t channel_count(const ComparedRecord& compared, Measure measure);
 
-/// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to robust^2.
+/// Residuals (prediction - measurement)/noise floor of every used row, scaled so that the sum of their squares is
+/// robust^2.
 std::size_t residual_count(const RecordSet& set);
 void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out);
 

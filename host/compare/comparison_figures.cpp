@@ -87,14 +87,14 @@ ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const Time
   return part;
 }
 
-/// Whether the coordinate varies: a single rest gives no curve.
+/// Whether the coordinate has different values; a single rest gives no curve.
 bool spreads(const std::vector<double>& coordinate) {
   if (coordinate.empty()) return false;
   const auto [least, most] = std::ranges::minmax(coordinate);
   return most - least > 0.1 * std::max(std::abs(least), std::abs(most));
 }
 
-/// The first model's residual in the selected range, if that has samples.
+/// Adds the first model's residual in the selected interval, if it has samples there.
 void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, const Focus& focus) {
   if (!focus.stretch) return;
   const std::size_t index = record_in(focus, model.comparison);

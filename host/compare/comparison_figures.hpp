@@ -1,4 +1,4 @@
-// Figures of a comparison, of one model or of several on top of each other.
+// Figures of a comparison of one or several models with records.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,31 +17,33 @@ struct ComparedModel {
   std::string path;             ///< as the user named it
   sim::DriveDescription model;  ///< with_measured_sensors
   Measurements measured;
-  RecordSet set;  ///< refers to `measured`
+  RecordSet set;  ///< refers to records of `measured`
   ModelComparison comparison;
 
-  std::string name() const;  ///< of the file
+  std::string name() const;  ///< file name
 };
 
-/// Checks the records as logged and compares the model, completed by their sensors, on windows of `window_s`.
-/// Throws Failure(usage) for an invalid time, and what MeasurementGate, compare_on and compare_model throw.
+/// Checks the records as logged and compares the model with them on windows of `window_s`. Missing sensor properties of
+/// the model come from the records. Throws Failure(usage) for an invalid time, and what MeasurementGate, compare_on and
+/// compare_model throw.
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted);
 
-/// "axis-comparison/1" of the first model; of several, each in "models".
+/// "axis-comparison/1" of one model; for several models, one per element of "models".
 nlohmann::json comparison_document(std::span<const ComparedModel> models);
 
-/// Roles with different colours, one per model; further models repeat them.
+/// Series roles with different colours for the models; they repeat if there are many models.
 SeriesRole role_of_model(std::size_t index);
 
-/// The record named in the focus. Throws Failure(usage) if there is no such record.
+/// Index of the record named in the focus. Throws Failure(usage) if there is no such record.
 std::size_t record_in(const Focus& focus, const ModelComparison& comparison);
 
-/// Measured and predicted rows of one record, and the errors.
+/// Measured and predicted rows of one record, and their difference.
 TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record,
                            const std::optional<TimeSpan>& stretch = {});
 
-/// The torque or force that each model lacks, as add_residual_plots() draws it; of one model as a map, too.
+/// The torque or force that is missing in each model, as add_residual_plots() draws it; for a single model also as a
+/// map.
 void add_missing_effort(std::span<const ComparedModel> models, Report& report, const Focus& focus = {});
 
 }  // namespace host

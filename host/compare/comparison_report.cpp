@@ -19,16 +19,15 @@ namespace host {
 
 namespace {
 
-constexpr double kAtFloor = 1.2;  ///< combined error up to which nothing remains to be explained
+constexpr double kAtFloor = 1.2;  ///< largest combined error at which nothing remains to be explained
 constexpr double kNear = 2.0;
-constexpr double kMuchBetter =
-    1.5;  ///< ratio of the errors without and with the effects from which they count as helpful
+constexpr double kMuchBetter = 1.5;  ///< least ratio of the errors without and with the effects for "helps"
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
-/// The records that a model was fitted to, according to its entries.
+/// The records to which a model was fitted, according to its entries.
 std::vector<std::string> training_files(const sim::DriveDescription& model) {
   std::vector<std::string> files;
   const auto take = [&](const std::string& name) {
@@ -54,7 +53,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return a == b || std::filesystem::equivalent(a, b, unknown);
 }
 
-/// Training records are those that the model was fitted to, if known, and never a held-back record.
+/// Training records are those to which the model was fitted, if known; never a held-back record.
 std::string diagnose_command(const ComparedModel& compared) {
   std::vector<std::string> train = training_files(compared.model), validate;
   for (const RecordError& record : compared.comparison.records) {
@@ -118,7 +117,7 @@ Verdict verdict_of(const ComparedModel& compared) {
   return verdict;
 }
 
-/// Several models: the one that fits best, and the others in comparison.
+/// Verdict on several models: the one that fits best, and the others in comparison.
 Verdict verdict_of(std::span<const ComparedModel> models) {
   const auto best =
       std::ranges::min_element(models, {}, [](const ComparedModel& one) { return one.comparison.error.combined; });
@@ -177,7 +176,7 @@ Table error_table(std::span<const ComparedModel> models) {
   return table;
 }
 
-/// The regions whose share of the error most exceeds their share of the samples.
+/// The regions whose share of the error exceeds their share of the samples most.
 std::vector<ErrorRegion> outstanding(const std::vector<ErrorRegion>& where, std::size_t most) {
   std::vector<ErrorRegion> regions;
   for (const ErrorRegion& region : where)
@@ -211,7 +210,7 @@ BarChart bars_of(const std::vector<ErrorRegion>& where, const std::string& parti
   return chart;
 }
 
-/// Error over floor of each model in the regions of a partition that it shares with the first model.
+/// Error over noise floor of each model, in the regions of a partition that all models have in common with the first.
 BarChart overlaid_bars(std::span<const ComparedModel> models, const std::string& partition, const std::string& title) {
   BarChart chart;
   chart.title = title;
@@ -303,7 +302,7 @@ Report comparison_report(std::span<const ComparedModel> models, const Focus& foc
                 fmt::format("{} · {}", titles, names));
   report.verdict(verdict_of(models));
 
-  report.section("How far off");
+  report.section("Size of the error");
   if (models.size() == 1) {
     Facts facts;
     facts.items = {{"error over floor", format_value(comparison.error.combined)},

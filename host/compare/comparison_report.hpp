@@ -10,12 +10,11 @@
 
 namespace host {
 
-/// Verdict, log faults, errors by record and channel, and the regions with the largest error. At least one model.
+/// Verdict, log faults, errors by record and channel, and the regions with the largest error. Needs at least one model.
 std::string comparison_text(std::span<const ComparedModel> models, const Terminal& terminal);
 
-/// Verdict, facts, traces of one record, the missing torque or force against speed, position, acceleration, time and
-/// history, the error by motion and the other partitions; several models are drawn on top of each other. Throws as
-/// record_in() does.
+/// Verdict, facts, traces of one record, the missing torque or force over speed, position, acceleration, time and
+/// history, the error by motion, and the other partitions. Several models share each plot. Throws as record_in() does.
 Report comparison_report(std::span<const ComparedModel> models, const Focus& focus = {});
 
 }  // namespace host

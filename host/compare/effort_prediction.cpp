@@ -12,7 +12,7 @@ namespace {
 
 bool slides_only(const Motion& motion) { return motion.deadband > 0.0; }
 
-/// Guard filter of a record that a regression decimates.
+/// Applies the guard filter of a record that a regression decimates.
 void guard(const Motion& motion, std::vector<double>& signal) {
   if (motion.decimation > 1)
     signal = ZeroPhaseLowPass::chebyshev(guard_cutoff_Hz(motion), motion.sample_rate_Hz)(signal);

@@ -8,13 +8,13 @@ namespace host {
 
 namespace {
 
-/// The drive with a rigid connection: its load moves with its motor.
+/// The drive with a rigid connection, so that the load moves with the motor.
 sim::DriveDescription moving_as_one(sim::DriveDescription model) {
   std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
   return model;
 }
 
-/// The smoothed motion of the machine, corrected for the error of the drive's encoder.
+/// The smoothed motion of the machine, corrected for the encoder error of the model.
 struct TrueMotion {
   std::vector<double> x, w;
 

@@ -15,7 +15,7 @@ struct ChannelSums {
   double error = 0.0, floor = 0.0, values = 0.0, squares = 0.0, signal = 0.0;
   std::size_t rows = 0;
 
-  /// `over_floor`: mean squared error over the squared noise floor. `origin`: what the signal is counted from.
+  /// `over_floor`: mean squared error over the squared noise floor. `origin`: zero of the signal.
   void add_window(const std::vector<double>& measured, const Window& window, double over_floor, double window_floor,
                   double origin) {
     const auto n = static_cast<double>(window.length);

@@ -17,7 +17,7 @@ struct Channels {
   }
 };
 
-/// The start state with another speed, and the correlated change of travel.
+/// The start state with another speed and the correlated change of travel.
 sim::DriveState changed(sim::DriveState state, double w, double x) {
   state.w += w;
   state.x += x;
@@ -26,9 +26,9 @@ sim::DriveState changed(sim::DriveState state, double w, double x) {
   return state;
 }
 
-/// The drive under a constant torque that moves it within a window about as far as noise of `deviation` per row does.
-/// After n rows, white noise adds up to a speed of sqrt(n) and a travel of sqrt(n^3/3) steps, a constant to n and
-/// n^2/2.
+/// The drive under a constant torque that moves it within a window about as far as white noise with `deviation` per
+/// row. After n rows, white noise adds up to a speed of sqrt(n) and a travel of sqrt(n^3/3) steps, a constant torque to
+/// n and n^2/2.
 sim::Drive pushed(sim::DriveDescription model, double deviation, std::size_t rows) {
   constexpr double kBetween = 1.2;  // 1 for the speed, 4/3 for the travel
   model.effects.push_back(
@@ -52,7 +52,7 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
   const std::vector<sim::DriveState> states = restart_states(drive, prepared, stride);
   if (prepared.record->has_position()) floor.x.resize(prepared.windows.size());
   if (prepared.record->has_speed()) floor.w.resize(prepared.windows.size());
-  // The measured torque differs from the acting torque.
+  // The effect of a measured torque that differs from the acting torque.
   std::vector<sim::Drive> misled;
   if (prepared.effort_noise > 0.0 && !prepared.windows.empty())
     for (const double sign : {-1.0, 1.0})
@@ -61,9 +61,10 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
     const sim::DriveState& start = states[index / stride];
-    // The two independent parts of the restart's error: an error of the speed with the correlated error of travel, and
-    // an error of travel alone. Each is tried with both signs, because friction turns small errors into different
-    // motions. An axis that seems to stand may creep; then a command near breakaway determines the whole window.
+    // The error of the restart has two independent parts: an error of the speed with the correlated error of the
+    // travel, and an error of the travel alone. Each is tried with both signs, because friction makes the motion depend
+    // on the sign. An axis that seems to stand still may creep; a command near breakaway then determines the whole
+    // window.
     const bool stands = motion.standing[window.begin];
     const double speed_variance = stands ? motion.hidden_creep * motion.hidden_creep : motion.w_variance[window.begin];
     const double slant = !stands && speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;

@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// Sums of one region while rows are assigned. Regions are ordered by rank.
+/// Sums of one region while rows are assigned. Regions are sorted by rank.
 struct RegionSum {
   std::string region, words;
   double squares = 0.0;

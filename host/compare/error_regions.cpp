@@ -16,14 +16,14 @@ namespace host {
 
 namespace {
 
-/// One predicted sample: the mean over its channels of (error/floor)^2.
+/// One predicted sample with the mean over its channels of (error/noise floor)^2.
 struct ErrorRow {
   std::size_t record;
   std::size_t row;
   double square;
 };
 
-/// 1, 2 or 5 times a power of ten, so that `span` takes about `count` steps.
+/// A step of 1, 2 or 5 times a power of ten that divides `span` into about `count` parts.
 double round_step(double span, double count) {
   const double raw = span / count;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -34,7 +34,7 @@ double round_step(double span, double count) {
 
 std::string number(double value) { return fmt::format("{:.6g}", std::abs(value) < 1e-12 ? 0.0 : value); }
 
-/// Assigns a row to its bin of equal width; bin names have round edges.
+/// Assigns a row to its bin of equal width. The names of the bins have round edges.
 void add_to_bin(Partition& partition, double value, double step, double square,
                 const std::function<std::pair<std::string, std::string>(const std::string&, const std::string&)>& name,
                 long offset = 0) {
@@ -153,8 +153,8 @@ struct Stretch {
   std::size_t begin = 0, end = 0;
 };
 
-/// The consecutive values with the largest sum (Kadane); empty if no value is positive. A range that began at `begin`
-/// may include k if `joins(begin, k)`.
+/// The consecutive values with the largest sum (Kadane's algorithm); empty if no value is positive. A range from
+/// `begin` may include k if `joins(begin, k)`.
 template <typename Joins>
 Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
   Stretch best;
@@ -174,8 +174,8 @@ Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
   return best;
 }
 
-/// The interval of travel with the most excess error, found like the interval of time in by_event. Absent if it covers
-/// most of the travel.
+/// The interval of travel with the most excess error, found in the same way as the interval of time in by_event. Left
+/// out if it covers most of the travel.
 Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   constexpr std::size_t kBins = 200;
   Partition partition("place");
@@ -228,9 +228,9 @@ Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   return partition;
 }
 
-/// Duration of the rest before the motion of a row; only the start of the motion counts.
+/// Partition by the duration of the rest before a motion; only the start of the motion counts.
 Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
-  constexpr double kStart_s = 0.2;  // friction that grew at rest is overcome within this time
+  constexpr double kStart_s = 0.2;  // the friction that has grown at rest is overcome in this time
   constexpr double kEdges_s[] = {0.0, 0.1, 0.3, 1.0, 3.0};
   Partition partition("rest");
   partition.define(0, "standing", "while the axis stands");
@@ -264,7 +264,8 @@ Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   return partition;
 }
 
-/// The interval of time with the most excess error: largest sum of the windows' excess over twice the mean (Kadane).
+/// The interval of time with the largest sum of excess error, where the excess of a window is its error over twice the
+/// mean (Kadane's algorithm).
 Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   Partition partition("event");
   if (rows.empty()) return partition;
@@ -307,19 +308,20 @@ std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const
 }
 
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
-  constexpr double kLeastShare = 0.3;  // of the error: a smaller share does not locate the failure
+  constexpr double kLeastShare = 0.3;  // of the error; a smaller share does not locate the failure
   constexpr double kStretchShare = 0.5;
   constexpr double kEventPortion = 0.05;
   constexpr double kOrderPortion = 0.05;  // probability assumed for one line of a spectrum
   const ErrorRegion* worst = nullptr;
   double most = 0.0;
   for (const ErrorRegion& region : regions) {
-    if (region.partition == "frequency") continue;  // errors grow over a window: most of them are always slow
+    if (region.partition == "frequency") continue;  // errors grow over a window, so low frequencies always dominate
     const bool order = region.partition == "order";
     if (order ? region.region == "not periodic" : !(region.rms > 1.0)) continue;
     const double share = order ? region.share : region.prevalence;
     const double portion = order ? kOrderPortion : region.portion;
-    // The interval is the best of all intervals, so it must hold most of the error, and one of time must be short.
+    // The interval is the best of all intervals, so it must contain most of the error; an interval of time must also be
+    // short.
     if (region.partition == "event" && (share < kStretchShare || portion > kEventPortion)) continue;
     if (region.partition == "place" && share < kStretchShare) continue;
     if (share < kLeastShare || portion <= 0.0 || portion >= share) continue;

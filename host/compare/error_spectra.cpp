@@ -38,7 +38,7 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
           error[k] = (predicted[window.begin + 1 + k] - measured[window.begin + 1 + k]) / unit;
         const std::vector<std::complex<double>> lines = spectrum_of(error);
         for (std::size_t line = 0; line < lines.size(); ++line) {
-          const double twice = line == 0 || 2 * line == n ? 1.0 : 2.0;  // the line of the negative frequency
+          const double twice = line == 0 || 2 * line == n ? 1.0 : 2.0;  // includes the line of the negative frequency
           const double frequency_Hz = static_cast<double>(line) / (static_cast<double>(n) * prepared.period_s);
           const auto band = std::ranges::upper_bound(kEdges_Hz, frequency_Hz) - std::begin(kEdges_Hz) - 1;
           partition.add(static_cast<long>(band), twice * std::norm(lines[line]) / static_cast<double>(n), twice);
@@ -54,8 +54,8 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
 void append_error_orders(const sim::DriveDescription& model, const RecordSet& set, std::vector<ErrorRegion>& regions) {
   constexpr std::size_t kMostOrders = 4;
   constexpr double kLeastShare = 0.02;
-  constexpr double kStepsAPeriod = 40.0;    // encoder steps cause shorter periods
-  constexpr double kPeriodsOfTravel = 3.0;  // fewer are a trend
+  constexpr double kStepsAPeriod = 40.0;    // shorter periods come from encoder steps
+  constexpr double kPeriodsOfTravel = 3.0;  // fewer periods are a trend
   constexpr double kLinesOfTravel = 2000.0;
   constexpr std::size_t kStride = 2;
   TravelSignal signal;

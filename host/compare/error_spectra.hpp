@@ -8,11 +8,11 @@
 
 namespace host {
 
-/// |DFT|^2 of the windows' errors by bands; by Parseval's theorem the bands' sums are the windows' squares.
+/// |DFT|^2 of the windows' errors in bands. By Parseval's theorem, the sum over the bands is the squared error.
 Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set);
 
-/// Appends the strongest periods of the torque or force residual along the travel (as orders per turn if there is a
-/// turn), and the aperiodic part. Appends nothing if a record has no position or hardly moves.
+/// Appends the strongest periods of the torque or force residual along the travel (as orders per turn of the shaft, if
+/// there is one), and the aperiodic part. Appends nothing if a record has no position or hardly moves.
 void append_error_orders(const sim::DriveDescription& model, const RecordSet& set, std::vector<ErrorRegion>& regions);
 
 }  // namespace host

@@ -10,13 +10,13 @@
 
 namespace host {
 
-/// Selects what is plotted; all figures stay the same.
+/// Selects what is plotted; the error figures do not change.
 struct Focus {
-  std::string record = {};               ///< whose traces are drawn; empty: the one with the largest error
-  std::optional<TimeSpan> stretch = {};  ///< of that record, highlighted in every plot
-  /// Coordinates of the map of the residual, by their names in the catalogue; else position and speed.
+  std::string record = {};               ///< record whose traces are drawn; if empty, the one with the largest error
+  std::optional<TimeSpan> stretch = {};  ///< interval of that record that every plot highlights
+  /// Coordinates of the map of the residual, by their names in the catalogue; default: position and speed.
   std::optional<std::pair<std::string, std::string>> map = {};
-  std::optional<double> period_mm = {};  ///< over which the residual is drawn; default: that of the model's ripple
+  std::optional<double> period_mm = {};  ///< period of the plots; default: that of the model's ripple
 };
 
 /// Coordinates that a map may have.

@@ -10,7 +10,7 @@ std::optional<double> free_run_rms(const sim::DriveDescription& model, const Pre
   const Record& record = *prepared.record;
   if (!record.has_position() || record.size() < 2 * kGivenSamples) return {};
   const sim::Drive drive(model);
-  // Speed: the slope of a straight line through the given samples, which need not all be apart.
+  // The speed is the slope of a straight line through the given samples, which may be equal.
   const double middle = 0.5 * static_cast<double>(kGivenSamples - 1);
   double product = 0.0, squares = 0.0;
   for (std::size_t k = 0; k < kGivenSamples; ++k) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kBaseKinds[] = {"inertia", "viscous", "coulomb"};
 
-/// Empty if the records do not show it: the axis never slides, or a record is too short for the filter.
+/// Empty if the records do not determine it, because the axis never slides or a record is too short for the filter.
 std::optional<double> inverse_error(const sim::DriveDescription& model, const std::vector<Record>& records) {
   try {
     return relative_error(model, records);
@@ -37,7 +37,7 @@ nlohmann::json number_or_null(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-/// Factor from a channel's unit to the file's: 1000 if the file is in mm and the drive in m.
+/// Factor from the unit of a channel to that of the file: 1000 if the file has mm and the drive m.
 double factor_in_file(const Record& record, std::vector<double> Record::*channel) {
   const KnownColumn* column = find_known_column(name_in_file(record, channel));
   const bool rotary = record.kind == sim::DriveKind::rotary;
@@ -46,7 +46,7 @@ double factor_in_file(const Record& record, std::vector<double> Record::*channel
   return rotary ? 1.0 : 1e3;
 }
 
-/// Reading of the table's sensor. Its zero is taken from the record, because no model knows it.
+/// Reading of the table's sensor. Its zero comes from the record, because the model does not contain it.
 std::vector<double> readings_of(std::vector<double> table, const Record& record, const sim::DataSheet& data) {
   double zero = 0.0;
   for (std::size_t k = 0; k < table.size(); ++k) {

@@ -1,4 +1,4 @@
-// Compares a model with measurements: size, channel and place of the error, and faults of the log.
+// Compares a model with measurements: size, channel and region of the error, and faults of the log.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,36 +18,36 @@ namespace host {
 struct RecordError {
   std::string path;
   ErrorFigures error;
-  std::optional<double> relative_error;  ///< of the inverse model; empty if the axis never slides
+  std::optional<double> relative_error;  ///< relative error of the inverse model; empty if the axis never slides
   std::optional<double> free_run;  ///< RMS position error of a run from the command alone to the record's end, mm or m
 };
 
 struct ModelComparison {
-  ErrorFigures error;  ///< all records together
+  ErrorFigures error;  ///< error of all records together
   std::optional<double> relative_error;
   std::vector<RecordError> records;
-  /// Kinds beyond inertia, viscous and Coulomb friction, and the factor by which `error.combined` is larger without
-  /// them (without refitting); 1 if there are none.
+  /// Effects beyond inertia, viscous and Coulomb friction, and the factor by which `error.combined` grows without them
+  /// (without a new fit); 1 if there are none.
   std::vector<std::string> effects;
   double without_effects = 1.0;
   std::vector<ErrorRegion> where;
   std::vector<LogFault> log_faults;
-  TableStudy table;  ///< of all records together; empty without a sensor on the table
+  TableStudy table;  ///< of all records together; empty if there is no sensor on the table
 };
 
-/// Compares on the figure_set() of the training records; `model` has its sensors (with_measured_sensors).
+/// Compares on the figure_set() of the training records. `model` includes its sensors (with_measured_sensors).
 ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set);
 
-/// Prediction of every row. A shorter window predicts the rows after the last whole one; row 0 is the restart state.
+/// Prediction of every row. A shorter window covers the rows after the last whole one; row 0 has the restart state.
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared);
 
-/// t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s);
-/// if it has the table's position, also that and x2_pred_mm (x2_pred_m), which starts at the first reading of the
+/// t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s). If the record
+/// has the position of the table, also that and x2_pred_mm (x2_pred_m), which starts at the first reading of the
 /// table's sensor.
 std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const sim::DriveDescription& model,
                                                                            const PreparedRecord& prepared);
 
-/// The same as CSV; every number reads back as the same double.
+/// The same as CSV, with all digits that a double needs.
 std::string predictions_csv(const sim::DriveDescription& model, const PreparedRecord& prepared);
 
 /// "axis-comparison/1".

@@ -9,8 +9,8 @@ namespace host {
 
 namespace {
 
-/// Builds the states from which windows restart, as the drive's model interprets the record: hidden states follow the
-/// motion before the window. If the model has an encoder error or changes the command, the same readings mean another
+/// Computes the states from which windows restart. The model of the drive interprets the record: hidden states follow
+/// the motion before the window, and with an encoder error or a changed command the same readings mean a different
 /// motion.
 class Restarts {
  public:
@@ -26,14 +26,14 @@ class Restarts {
     if (shapes_) command_V_.resize(motion_.x.size());
   }
 
-  /// Call it for every stride-th window, in ascending order.
+  /// Must be called for every stride-th window, in ascending order.
   sim::DriveState at(std::size_t index) {
     const Window& window = prepared_.windows[index];
     const std::size_t row = window.begin;
     const bool shifts = errs_ || shapes_;
     if (memory_ == 0 && !shifts) return drive_.at(motion_.x[row], motion_.w[row]);
     const ShiftWeights* weights = shifts ? &prepared_.weights_of(window) : nullptr;
-    // Rows beyond the drive's memory are skipped.
+    // Rows that are too old to affect the state of the drive are skipped.
     std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
     if (shifts) needed = std::min(needed, weights->first);
     if (!begun_ || needed > row_) begin_at(needed, index);
@@ -44,8 +44,8 @@ class Restarts {
   }
 
  private:
-  /// Two masses are observed by a separate simulation, which takes the command as the drive does and needs the true
-  /// travel. One mass follows the readings, and the drive's corrections to them are added afterwards.
+  /// Two masses are observed by a separate simulation, which needs the drive's command and the true travel. One mass
+  /// follows the readings, and the drive's corrections are added afterwards.
   double followed_travel(std::size_t row) const {
     return drive_.has_second_mass() ? drive_.travel_at_reading(motion_.x[row]) : motion_.x[row];
   }
@@ -58,8 +58,8 @@ class Restarts {
     keep();
   }
 
-  /// The correction of a window's readings needs rows beyond the beginnings of the next windows, so the states at these
-  /// are stored in passing.
+  /// The corrected readings of a window depend on rows after the start of the following windows. So the states at these
+  /// starts are stored on the way.
   void keep() {
     while (next_kept_ < prepared_.windows.size() && prepared_.windows[next_kept_].begin == row_) {
       kept_.push_back(state_);
@@ -81,8 +81,8 @@ class Restarts {
     }
   }
 
-  /// At rest, hidden states keep their value from the motion before: the position of a second mass in its gap, the
-  /// deflection of a bristle.
+  /// At rest, hidden states keep their value from the previous motion, for example the position of a second mass in its
+  /// gap or the deflection of a bristle.
   std::size_t rows_back(std::size_t row) const {
     if (memory_ == 0) return 0;
     std::size_t back = std::min(row, memory_);
@@ -109,10 +109,10 @@ class Restarts {
   std::size_t stride_;
   std::size_t memory_;
   bool errs_, shapes_;
-  sim::DriveState state_;  ///< of the drive along the measured motion
+  sim::DriveState state_;  ///< state of the drive along the measured motion
   std::size_t row_ = 0;
   bool begun_ = false;
-  std::deque<sim::DriveState> kept_;  ///< at the beginnings of windows not yet requested
+  std::deque<sim::DriveState> kept_;  ///< states at the starts of windows that are not yet requested
   std::size_t next_kept_ = 0;
   std::vector<double> reading_, command_V_;
 };

@@ -1,5 +1,5 @@
-// Prediction of a record from its command alone, over short windows that restart from the smoothed measured state. Free
-// runs drift, and a drift says little about its cause.
+// Prediction of a record by its command alone, over short windows. Each window restarts from the smoothed measured
+// state, because a free run drifts and its drift shows little about the cause.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,18 @@ namespace host {
 struct Prediction {
   std::vector<double> x;      ///< encoder reading without quantisation
   std::vector<double> w;      ///< tachometer reading without noise
-  std::vector<double> table;  ///< travel of the table; empty unless the record has it
+  std::vector<double> table;  ///< travel of the table; empty if the record has none
 };
 
 /// Predicts every `stride`-th window. `out` is resized if needed, so it can be reused.
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride = 1);
 
-/// The restart states of every `stride`-th window: hidden states follow the record's motion from its start.
+/// The restart states of every `stride`-th window. Hidden states follow the motion of the record from its start.
 std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared,
                                             std::size_t stride = 1);
 
-/// One window that a drive runs through from its own state. The sensors' readings are written to `x` and `w`, which
-/// must have the window's length; the table's travel to `table`, if that is given.
+/// One window that a drive predicts from its own state. The sensor readings are written to `x` and `w`, which must have
+/// the length of the window; the travel of the table is written to `table`, if it is set.
 struct WindowRun {
   const Window* window;
   sim::DriveState state;
@@ -35,11 +35,10 @@ struct WindowRun {
   double* table = nullptr;
 };
 
-/// Runs are interleaved: the processor overlaps them, where a single run would wait for its last result. This doubles
-/// the speed.
+/// Several runs are interleaved, because the processor can overlap independent calculations. This doubles the speed.
 inline constexpr std::size_t kSideBySide = 4;
 
-/// Carries out some runs, up to kSideBySide of them, of the same record.
+/// Performs up to kSideBySide runs of the same record.
 void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, std::span<WindowRun> runs);
 
 }  // namespace host

@@ -49,7 +49,7 @@ double mean_of(const std::vector<double>& values, std::size_t row, std::size_t s
 
 enum class Beyond { motion, inverse_model, speed_channel };
 
-/// Torque or force that each row's measured motion needed beyond the model; NaN where the axis stands or reverses.
+/// Torque or force that the measured motion of each row needed beyond the model; NaN if the axis stands or reverses.
 std::vector<double> missing_by_row(const sim::DriveDescription& model, const PreparedRecord& prepared) {
   std::vector<double> missing(prepared.record->size(), std::nan(""));
   const ResidualSamples samples = residual_samples(model, prepared, 1);
@@ -80,7 +80,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
     const auto acceleration_at = [&](std::size_t row) {
       return (motion.w[row + step] - motion.w[row - step]) / (2.0 * step_s);
     };
-    // For changes slower than its filter, a tachometer shows the speed of one time constant ago.
+    // For changes slower than its filter, a tachometer shows the speed with a delay of one time constant.
     const auto motion_at = [&](std::size_t row) {
       sim::DriveMotion at;
       at.x = motion.x[row];
@@ -89,7 +89,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
       return at;
     };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
-      // Where the axis stands or reverses, the smoother rounds off the motion.
+      // At standstill and at reversals the smoother rounds off the motion.
       if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
       const double slope = 0.5 * (beyond(row + step) - beyond(row - step));

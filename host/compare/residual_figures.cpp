@@ -20,7 +20,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::size_t kFewestSamples = 8;  // averages of 5 ms; a mean of fewer shows their noise
+constexpr std::size_t kFewestSamples = 8;  // averages of 5 ms; a mean of fewer is too noisy
 
 std::size_t bins_for(std::size_t samples) {
   constexpr std::size_t kMost = 120, kFewest = 8, kSamplesABin = 25;
@@ -66,7 +66,7 @@ std::vector<ScatterSeries> in_one_colour(std::vector<ScatterSeries> curves, cons
   return curves;
 }
 
-/// The same vertical range in all: from the lowest to the highest end of a band.
+/// Gives all plots the same vertical range: from the lowest to the highest end of a band.
 void share_range(std::span<ScatterPlot> plots) {
   constexpr double kMargin = 0.06;
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -82,7 +82,7 @@ void share_range(std::span<ScatterPlot> plots) {
   for (ScatterPlot& plot : plots) plot.y_range = {low - margin, high + margin};
 }
 
-/// Equal cells over the middle 98 % of the values: a few fast samples must not shrink all others to a line.
+/// Equal cells over the middle 98 % of the values, so that a few fast samples do not compress all others.
 HeatMap::Cells cells_over(const Axis& axis, const Values& values, std::size_t count, double period) {
   constexpr double kLeftOut = 0.01;
   const double low = quantile(values, kLeftOut), high = quantile(values, 1.0 - kLeftOut);
@@ -214,7 +214,7 @@ void add_residual_plots(Report& report, std::span<const ResidualView> views, con
 void add_residual_maps(Report& report, std::span<const ResidualView> views, const ResidualCoordinate& across,
                        const ResidualCoordinate& up, sim::DriveKind kind) {
   constexpr std::size_t kColumns = 48, kRows = 32;
-  constexpr double kStrongest = 0.98;  // of the cells' magnitudes: one cell must not pale all others
+  constexpr double kStrongest = 0.98;  // quantile of the magnitudes, so that one cell does not set the colour scale
   std::string title = across.axis.quantity + " and " + up.axis.quantity;
   title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   std::vector<HeatMap> maps;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kWindow = 256;  // averages of 5 ms
 
-/// The averages of a record, one after the other; zero where the axis stands.
+/// The averages of a record in sequence; zero while the axis stands.
 struct Slots {
   std::vector<double> value;
   std::vector<bool> moves;
@@ -75,7 +75,7 @@ void add_residual_spectrum(Report& report, std::span<const ResidualView> views, 
   plot.logarithmic_x = plot.logarithmic_y = true;
   for (const ResidualView& view : views) {
     ScatterSeries spectrum = spectrum_of_residual(view.force);
-    if (spectrum.x.empty()) continue;  // a short stretch
+    if (spectrum.x.empty()) continue;  // the record is too short
     if (views.size() > 1) {
       spectrum.name = view.name;
       spectrum.role = view.role;

@@ -1,4 +1,4 @@
-// The residual torque or force of a model by frequency.
+// Spectrum of a model's torque or force residual.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// Amplitude spectral density, Nm/sqrt(Hz) or N/sqrt(Hz), one-sided, over Hz: Welch's method with Hann windows of 1.28
-/// s that overlap by half. Intervals at rest count as zero, and windows at rest for more than half of their length are
+/// One-sided amplitude spectral density, Nm/sqrt(Hz) or N/sqrt(Hz), over Hz. Welch's method with Hann windows of 1.28 s
+/// that overlap by half. The residual is zero at rest, and windows with rest for more than half of their length are
 /// left out. Empty if no window remains.
 ScatterSeries spectrum_of_residual(const ResidualEffort& samples);
 

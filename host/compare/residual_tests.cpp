@@ -26,7 +26,7 @@ using Values = std::vector<double>;
 /// Fewest samples in a set for a test.
 constexpr std::size_t kFewestTested = 100;
 
-/// Samples are clipped at this multiple of the median size: one breakaway must not hide recurring effects.
+/// Samples are clipped at this multiple of the median magnitude, so that one breakaway does not hide recurring effects.
 constexpr double kMostMedians = 6.0;
 
 Values clipped(Values values) {
@@ -41,11 +41,11 @@ double sum_of_squares(const Values& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// A curve of means over bins with as many samples each; a mean of few samples is drawn towards zero.
+/// A curve of means over bins with equal numbers of samples. The mean of a few samples is shrunk towards zero.
 class Curve {
  public:
   Curve(const Values& coordinate, const Values& value, std::size_t bins) {
-    constexpr double kDrawnBy = 10.0;  // samples: neighbours are correlated, so ten count as about one
+    constexpr double kDrawnBy = 10.0;  // samples; neighbours are correlated, so ten are worth about one
     Values sorted = coordinate;
     std::ranges::sort(sorted);
     for (std::size_t bin = 1; bin < bins; ++bin) edges_.push_back(sorted[bin * sorted.size() / bins]);
@@ -63,7 +63,7 @@ class Curve {
 
   double operator()(double coordinate) const { return means_[bin_of(coordinate)]; }
 
-  /// The bins next to the strongest one that have its sign and at least half of its height.
+  /// The range of bins around the strongest one that have its sign and at least half of its height.
   std::pair<double, double> stands_out() const {
     const auto top = static_cast<std::size_t>(std::ranges::max_element(weights_) - weights_.begin());
     const auto alike = [&](std::size_t bin) { return means_[bin] / means_[top] > 0.5; };
@@ -81,14 +81,14 @@ class Curve {
   double low_ = 0.0, high_ = 0.0;
 };
 
-/// A set's residual, ready to be tested.
+/// The residual of a set, prepared for the tests.
 struct Half {
   ResidualEffort samples;
   Values value;
 
   explicit Half(ResidualEffort residual) : samples(std::move(residual)), value(clipped(samples.missing)) {}
 
-  /// The residual as friction: positive if it opposes the motion.
+  /// The residual as friction, positive if it opposes the motion.
   Half resisting() const {
     Half half = *this;
     for (std::size_t k = 0; k < half.value.size(); ++k)
@@ -97,8 +97,8 @@ struct Half {
   }
 };
 
-/// Both sets along one coordinate, split in blocks into two folds: a curve fitted on one is validated on the other.
-/// Whole sets would not do, because one may never visit the place of an effect.
+/// Both sets along one coordinate, split in blocks into two folds. A curve fitted on one fold is validated on the
+/// other. The sets themselves are no suitable folds, because one of them may not reach the position of an effect.
 struct Folds {
   std::array<Values, 2> along, value;
 
@@ -129,8 +129,8 @@ struct Folds {
   }
 };
 
-/// The strongest ripple over the travel, fitted on one fold and validated on the other: bins over the whole travel are
-/// too wide for effects that repeat each turn of a screw.
+/// The strongest ripple over the travel, fitted on one fold and validated on the other. Bins over the whole travel are
+/// too wide for effects that repeat with each turn of a screw.
 ResidualDependence on_period(const std::array<const Half*, 2>& halves, double resolution, double in_mm) {
   constexpr double kStepsAPeriod = 40.0, kFinest = 2000.0, kPeriodsOfTravel = 3.0;
   ResidualDependence result{"position", {}, 0.0};
@@ -163,7 +163,7 @@ ResidualDependence on_period(const std::array<const Half*, 2>& halves, double re
   return result;
 }
 
-/// Part of the squared residual that the windows before and after a window predict.
+/// Part of the squared residual in a window that the windows before and after it predict.
 double share_of_time(const Half& half) {
   const std::vector<std::size_t>& window = half.samples.window;
   const std::size_t windows = window.back() + 1;
@@ -172,7 +172,7 @@ double share_of_time(const Half& half) {
     sums[window[k]] += half.value[k];
     ++counts[window[k]];
   }
-  double product = 0.0, square = 0.0;  // of neighbouring means: how much of one predicts the other
+  double product = 0.0, square = 0.0;  // of a window's mean and the mean of its neighbours
   Values foretold(windows);
   for (std::size_t k = 1; k + 1 < windows; ++k) {
     const double count = counts[k - 1] + counts[k + 1];
@@ -181,14 +181,14 @@ double share_of_time(const Half& half) {
     product += foretold[k] * sums[k];
     square += foretold[k] * foretold[k] * counts[k];
   }
-  // The best multiple of the neighbours' mean removes product^2/square.
+  // The best multiple of the neighbours' mean reduces the squared error by product^2/square.
   return product > 0.0 && square > 0.0 ? product * product / square / sum_of_squares(half.value) : 0.0;
 }
 
 /// Power over frequency, averaged over segments of 2 s with half overlap (Welch 1967, Hann window), 0.5 Hz apart.
 struct Spectrum {
   static constexpr double kSegment_s = 2.0, kLowest_Hz = 3.0;
-  Values power;  ///< of line k at k/kSegment_s Hz; sums to about 1
+  Values power;  ///< power of line k, at k/kSegment_s Hz; the sum is about 1
 
   explicit Spectrum(const Half& half) {
     const double period_s = half.samples.period_s;
@@ -211,7 +211,7 @@ struct Spectrum {
       for (double& line : power) line /= total;
   }
 
-  /// Power of a line and its two neighbours above the median of the lines around them, as a part of the total.
+  /// Power of a line and its two neighbours above the median of the lines around them, as a share of the total.
   double outstanding(std::size_t line) const {
     constexpr std::size_t kRound = 12;
     if (line < static_cast<std::size_t>(kLowest_Hz * kSegment_s) || line + 1 >= power.size()) return 0.0;
@@ -274,7 +274,8 @@ Correlation correlation(const ResidualEffort& samples, const Values& value, cons
   return result;
 }
 
-/// Speeds after short rests, then after longer ones, and so on, because friction that grew at rest fades with speed.
+/// Speeds in separate ranges for each duration of the preceding rest, because friction that has grown at rest decays
+/// with speed.
 Values speed_after_rests(const ResidualEffort& samples) {
   constexpr std::array kEdges_s{0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
   const double apart = 3.0 * std::ranges::max(samples.w, {}, [](double w) { return std::abs(w); });
@@ -284,7 +285,7 @@ Values speed_after_rests(const ResidualEffort& samples) {
   return result;
 }
 
-/// Time through all records, one after the other.
+/// Time through all records in sequence.
 Values time_in_all(const ResidualEffort& samples) {
   Values result = samples.t_s;
   double before = 0.0, longest = 0.0;
@@ -360,7 +361,7 @@ ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& 
   against("travel_since_reversal", &ResidualEffort::since_reversal, 24, in_mm, "where the travel since a reversal is",
           "mm");
   against("acceleration", &ResidualEffort::acceleration, 24, 1.0, "at accelerations", rotary ? "rad/s²" : "m/s²");
-  const bool by_current = is_known_by_current(data);  // then a volt stands for an ampere
+  const bool by_current = is_known_by_current(data);  // then the command is in amperes
   against("current", &ResidualEffort::command_V, 24, 1.0, by_current ? "at currents" : "at commands",
           by_current ? "A" : "V");
   against("rest", &ResidualEffort::rest_s, 12, 1.0, "after a rest", "s");
@@ -381,7 +382,7 @@ ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& 
     tests.constant = std::max(tests.constant, Folds(halves, &ResidualEffort::w).removed_share(1));
   std::ranges::stable_sort(tests.dependences, std::greater(), &ResidualDependence::share);
 
-  constexpr long kLags = 20;  // of 5 ms: as long as a window
+  constexpr long kLags = 20;  // of 5 ms, together the length of a window
   tests.with_itself = correlation(second.samples, second.value, second.value, 0, kLags);
   tests.with_command = correlation(second.samples, second.value, second.samples.command_V, -kLags, kLags);
   return tests;

@@ -17,13 +17,13 @@ namespace host {
 namespace {
 
 constexpr std::size_t kPeriods = 3;
-/// Least share of the residual that a period must explain to be named; noise over as many periods explains less.
+/// A period is named if it explains at least this share of the residual. Noise explains less.
 constexpr double kNamedShare = 0.1;
 
 bool by_position(const Record& record) { return record.has_position() && !record.x_ref.empty(); }
 bool by_speed(const Record& record) { return record.has_speed() && !record.w_ref.empty(); }
 
-/// Central differences; the ends as their neighbours.
+/// Central differences; the first and last values repeat their neighbours.
 Eigen::VectorXd rate_of(const Eigen::VectorXd& values, double period_s) {
   Eigen::VectorXd rate(values.size());
   for (Eigen::Index k = 1; k + 1 < values.size(); ++k) rate(k) = (values(k + 1) - values(k - 1)) / (2.0 * period_s);
@@ -36,7 +36,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Regressors in order, each with the share of the squared error that it explains together with the earlier ones.
+/// Fits the regressors in order. Each gets the additional share of the squared error that it explains.
 Eigen::VectorXd take_parts(const Eigen::VectorXd& error, const std::vector<Eigen::VectorXd>& columns,
                            TrackingError& result) {
   const double whole = error.squaredNorm();
@@ -57,7 +57,7 @@ Eigen::VectorXd take_parts(const Eigen::VectorXd& error, const std::vector<Eigen
 std::vector<PeriodPeak> periods_of(const Record& record, const Eigen::VectorXd& rest) {
   const auto [low, high] = std::ranges::minmax(record.x);
   const double travel = high - low;
-  constexpr double kFinest = 200.0;  // periods in the travel: finer ones are the sensor's
+  constexpr double kFinest = 200.0;  // periods over the travel; shorter ones come from the sensor
   if (!(travel > 0.0)) return {};
   TravelSignal signal{record.x, {rest.begin(), rest.end()}, std::vector<double>(record.size(), 1.0)};
   std::vector<PeriodPeak> peaks = find_periods(signal, travel / kFinest, travel / 2.0, kPeriods);

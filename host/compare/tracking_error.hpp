@@ -1,5 +1,5 @@
-// Tracking error of a record without command or current, from position (or speed) and reference: its sources in the
-// motion, without physics.
+// Tracking error of a record without command or current, from position (or speed) and reference. Describes it by
+// quantities of the motion, without physics.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,30 +12,30 @@
 
 namespace host {
 
-/// A share of the tracking error that follows a quantity of the reference.
+/// A share of the tracking error that is proportional to a quantity of the reference.
 struct TrackingPart {
   std::string with;  ///< "constant", "speed", "direction", "acceleration"
   double coefficient = 0.0;
-  std::string unit;    ///< of the coefficient
-  double share = 0.0;  ///< part of the squared error that it explains, 0..1, in this order
+  std::string unit;    ///< unit of the coefficient
+  double share = 0.0;  ///< part of the squared error that it explains beyond the earlier ones, 0..1
 };
 
-/// Reference minus measurement.
+/// The tracking error is reference minus measurement.
 struct TrackingError {
   std::string path;
   std::string channel;  ///< x_mm, x_m, w_rad_s or v_m_s
   double rms = 0.0, largest = 0.0, largest_at_s = 0.0;
   std::vector<TrackingPart> parts;
-  std::vector<PeriodPeak> periods;  ///< of the remaining error along the travel; only if a position was recorded
+  std::vector<PeriodPeak> periods;  ///< periods of the remaining error along the travel; needs a position
 };
 
 /// Whether a record has a reference and its measurement, but no torque, force or command.
 bool has_reference_only(const Record& record);
 
-/// The records of these files, if none of them has a command, torque or force; otherwise none. `data`: of their drive.
+/// The records of these files, if none of them has a command, torque or force; otherwise empty. `data`: of their drive.
 std::vector<Record> tracking_records(const std::vector<std::string>& paths, const sim::DataSheet& data);
 
-/// Throws Failure(bad_input) where has_reference_only() does not hold.
+/// Throws Failure(bad_input) if has_reference_only() is false.
 TrackingError tracking_error(const Record& record);
 
 std::string tracking_text(const std::vector<TrackingError>& errors);

@@ -8,8 +8,9 @@
 
 namespace host {
 
-/// add_effect, or add_free_curve where `kind` is "free_curve": only it takes `over`. Throws Failure(usage) if another
-/// kind gives it, Failure(refused) if no part of the records can validate the fit, and what those two throw.
+/// Calls add_free_curve() if `kind` is "free_curve", otherwise add_effect(). Only a free curve accepts `over`:
+/// Failure(usage) if another kind gives it. Throws Failure(refused) if no part of the records can validate the fit, and
+/// what the called function throws.
 Addition add_kind(const sim::DriveDescription& model, const std::string& kind, const std::string& over,
                   const Measurements& measured);
 

@@ -18,7 +18,7 @@ struct Adjustment {
 Adjustment adjust(const sim::DriveDescription& model, const sim::DriveDescription& adjusted,
                   const Measurements& measured);
 
-/// `values`: what was set, each "NAME=VALUE"; `model_path`: of the adjusted model.
+/// `values`: what was set, each "NAME=VALUE"; `model_path`: path of the adjusted model.
 nlohmann::json to_json(const Adjustment& adjustment, const std::vector<std::string>& values,
                        const Measurements& measured, const std::string& model_path);
 

@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-/// Windows in which the axis moves without reversal.
+/// Error over the windows in which the axis moves without reversal.
 double error_while_sliding(const sim::DriveDescription& model, const RecordSet& set) {
   const SetError error = error_of(sim::Drive(model), set);
   double square = 0.0;
@@ -38,16 +38,16 @@ double error_while_sliding(const sim::DriveDescription& model, const RecordSet& 
   return channels == 0 ? error.combined : std::sqrt(square / static_cast<double>(channels));
 }
 
-/// Single late breakaways or impacts may raise the error above this limit. The error in sliding motion and the robust
-/// error are small nevertheless.
+/// A few late breakaways or impacts may raise the total error above the limit. The error in sliding motion and the
+/// robust error stay small even then.
 bool is_small(const sim::DriveDescription& model, const RecordSet& set) {
   const SetError error = error_of(sim::Drive(model), set);
   if (error.combined <= kSmall) return true;
   return error.robust <= 1.0 && error_while_sliding(model, set) <= 1.0;
 }
 
-/// The base fitted to both sets, if it suits both. Then the validation error of a base from the training data alone is
-/// the uncertainty of its parameters (for example a viscous coefficient from slower motions).
+/// The base fitted to both sets, if it then fits both. If so, the validation error of a base fitted to the training
+/// data alone only shows uncertain parameters (for example a viscous coefficient from slower motions).
 std::optional<sim::DriveDescription> base_of_both(const Diagnosis& diagnosis) {
   sim::DriveDescription base = fit_base(diagnosis.base, together(diagnosis.training, diagnosis.validation));
   if (!is_small(base, diagnosis.training) || !is_small(base, diagnosis.validation)) return {};
@@ -104,8 +104,9 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
       by_speed_channel ? test_speed_channel(diagnosis.base, diagnosis.training, diagnosis.validation) : of_motion;
   // 99 of 100 simulated cases without an effect stay below this.
   constexpr double kLeast = 0.02;
-  // The smoother rounds changes of the acceleration and alone leaves up to 0.61 over it (a hundred drives without an
-  // effect): below the larger share, acceleration is named only if nothing else shows.
+  // The smoother rounds steps of the acceleration. This alone makes up to 0.61 of the squared residual depend on
+  // acceleration (in a hundred drives without an effect). Below kMostOnAcceleration, acceleration is named only if no
+  // other coordinate is.
   constexpr double kLeastOnAcceleration = 0.05, kMostOnAcceleration = 0.7;
   // A residual that depends on motion is also correlated in time, and differs between parts of the record if the
   // motions do.
@@ -129,8 +130,8 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
     most = weight;
     best = &dependence;
   }
-  // Share near reversals in 27 machines with an effect outside the catalogue: presliding 0.87, friction growing at rest
-  // 0.75 (found by its own coordinate), all others at most 0.58.
+  // Share of the residual near reversals, in 27 machines with an effect outside the catalogue: presliding 0.87,
+  // friction growing at rest 0.75 (named by its own coordinate), all others at most 0.58.
   constexpr double kWeak = 0.05, kNearReversals = 0.65;
   if (most < kWeak && tests.near_reversals > kNearReversals)
     return {"travel_since_reversal", tests.where_near_reversals};
@@ -145,7 +146,7 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
 }
 
 std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis) {
-  if (diagnosis.rough || diagnosis.before_train >= 2.0 * kSmall) return {};  // what is missing shows in training alone
+  if (diagnosis.rough || diagnosis.before_train >= 2.0 * kSmall) return {};  // the training data suffice
   if (const auto base = base_of_both(diagnosis)) return base_is_open(diagnosis, *base);
   return {};
 }
@@ -155,7 +156,7 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis) {
                                          std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate)}) {
     if (is_small(diagnosis.base, *set)) continue;
     const double told = set == &diagnosis.validation ? diagnosis.told(error) : diagnosis.told_of_training(error);
-    // With few windows a single bad one gives such an error.
+    // With few windows, a single bad window can cause such an error.
     const auto windows = static_cast<double>(set->used_windows());
     if (error < kSmall * (1.0 + 1.0 / std::sqrt(windows)))
       return Objection{Status::insufficient_data,

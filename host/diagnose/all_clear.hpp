@@ -13,9 +13,9 @@ namespace host {
 /// Largest error over noise floor of a complete model: simulated cases without an effect give 0.8 to 1.05.
 inline constexpr double kSmall = 1.2;
 
-/// Why there is no all-clear, or no claim.
+/// The reason why the model is not called complete, or why an effect is not claimed.
 struct Objection {
-  Status status;            ///< unexplained, or insufficient_data where the records could not have shown an effect
+  Status status;            ///< unexplained, or insufficient_data if the records cannot show an effect
   std::string explanation;  ///< sentences
   std::string next_experiment;
 };
@@ -29,9 +29,9 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis);
 /// Whether the base fails to predict the speed channel but predicts the position.
 bool speed_channel_alone_fails(const Diagnosis& diagnosis);
 
-/// The coordinate that carries most of the residual, and where along it, in words: of the torque or force
-/// (`of_motion`), or of the speed channel if only that fails. Falls back on the regions of the error if there is no
-/// dependence.
+/// The coordinate on which the residual depends most, and the range of it with the largest residual, in words. The
+/// residual is that of the torque or force (`of_motion`), or of the speed channel if only that channel fails. If the
+/// residual depends on no coordinate, the region with the largest error is named.
 struct Trace {
   std::string coordinate, where;
 };

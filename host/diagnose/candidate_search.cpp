@@ -17,37 +17,38 @@ namespace host {
 
 namespace {
 
-/// A candidate must lower the training error of a first look by this factor to be worth a serious fit.
+/// A candidate gets a serious fit only if its first fit lowers the training error to this share.
 constexpr double kPromise = 0.98;
 
-/// Of the candidates worse than the best of the first look by this factor, only a few get a serious fit, and none that
-/// needs many small integration steps.
+/// Candidates with an error of more than this multiple of the best one after the first look: only a few get a serious
+/// fit, and none of those that need many small integration steps.
 constexpr double kOutOfSight = 2.0;
 
 /// Candidates within this factor of the best after the serious fits enter the final comparison.
 constexpr double kClose = 1.5;
 
-/// Two starts of one effect are both pursued while their errors are so close.
+/// Two starts of one effect are both fitted further while the ratio of their errors is below this.
 constexpr double kOpenRace = 1.25;
 
-/// A spectrum shows a periodic effect at the right period, but smoothing weakens it, and a base biased by its absence
-/// would suppress it. So its amplitude is fitted first, alone.
+/// A spectrum gives the period of a periodic effect correctly, but smoothing reduces its amplitude, and a base that was
+/// fitted without the effect would suppress it. So its amplitude is fitted first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
-/// Budgets are at least three times what a drive with one integrator step per sample needs, so that a resonance of 200
-/// Hz at 1 kHz (five steps) still gets as many passes as most fits take. All fits of a search together take at most
+/// A drive with one integrator step per sample needs at most a third of these budgets. So a resonance of 200 Hz at 1
+/// kHz (five steps per sample) still gets as many passes as most fits take. All fits of a search together take at most
 /// some 400 million steps.
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
-/// Budget for each start near a finalist: enough to see which local minimum is the deepest.
+/// Budget for each start near a finalist: enough to find the deepest local minimum.
 constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
 constexpr std::size_t kBestOfTryout = 4;
-/// If the base itself needs many small steps, so does every candidate: each gets this share of its budget.
+/// If the base itself needs many small steps, so does every candidate. Each candidate then gets this share of its
+/// budget.
 constexpr double kCostlyPart = 0.4;
 /// Least number of passes for a useful fit: six Jacobians of some eight parameters.
 constexpr double kLeastPasses = 50.0;
 
-/// The set with about this many windows in use, evenly spread over the records.
+/// The set with about this many windows in use, spread evenly over the records.
 RecordSet thinned(const RecordSet& set, std::size_t windows) {
   RecordSet thin = set;
   thin.stride = 1;
@@ -55,7 +56,7 @@ RecordSet thinned(const RecordSet& set, std::size_t windows) {
   return thin;
 }
 
-/// The set with so few windows in use that a fit's budget suffices for its passes; at least ten windows.
+/// The set with so few windows in use that the budget suffices for kLeastPasses passes, but at least ten windows.
 RecordSet affordable(const RecordSet& set, const sim::DriveDescription& model, const FitOptions& options) {
   constexpr std::size_t kLeastWindows = 10;
   const double share = kLeastPasses * steps_of(sim::Drive(model), set) / options.most_steps;
@@ -81,14 +82,15 @@ struct Start {
   }
 };
 
-/// Noise floors depend on the model that propagates them. Presliding, a second mass or a gap propagates the restart's
-/// uncertainty differently, so such a candidate is compared with the base on its own noise floors.
+/// Noise floors depend on the model that propagates the uncertainty of a restart. A model with presliding, a second
+/// mass or a gap propagates it differently from the base, so such a candidate and the base are compared over the
+/// candidate's own noise floors.
 bool needs_own_floors(const sim::DriveDescription& model) {
   const sim::Drive drive(model);
   return drive.has_second_mass() || drive.bristles.has_value();
 }
 
-/// The set with the floors that a model is compared on.
+/// The set with the noise floors over which a model is compared.
 RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared) {
   RecordSet own = shared;
   if (needs_own_floors(model)) renew_floors(own, model);
@@ -111,11 +113,11 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
   start.error = fit.robust / error_of(sim::Drive(base), own).robust;
 }
 
-/// An effect with more starts than this is scanned: each start is evaluated unfitted, and only the best continue, first
-/// by a search without gradients.
+/// An effect with more starts than this is scanned: each start is evaluated unfitted, and only the best are fitted,
+/// first by a search without gradients.
 constexpr std::size_t kMostStarts = 6;
 constexpr std::size_t kBestOfScan = 2;
-/// Largest unfitted error, relative to the base, of a start that continues. A slightly wrong second mass is worse than
+/// Largest unfitted error, relative to the base, of a start that is fitted. A slightly wrong second mass is worse than
 /// none: the starts that found a gap beside asymmetric friction began at 1.17 and ended at 0.7.
 constexpr double kWorstOfScan = 1.25;
 
@@ -153,8 +155,8 @@ SearchEffort SearchEffort::over(double window_s) const {
 
 namespace {
 
-/// Whether a breakaway drove static friction above three times the given value, to a local minimum that the other
-/// parameters may have left.
+/// Whether the fit raised the static friction to more than three times the given value because of a single breakaway.
+/// This is a local minimum that may no longer exist with other values of the other parameters.
 bool static_friction_ran_away(const sim::DriveDescription& fitted, const sim::DriveDescription& given) {
   constexpr double kFar = 3.0;
   const sim::EffectEntry *before = given.find("stribeck"), *after = fitted.find("stribeck");
@@ -220,8 +222,8 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 
 namespace {
 
-/// The model with equal Stribeck speeds in both directions: an effect that disturbs the jogs biases each direction
-/// separately, and the fit does not recover. Empty if they are already equal.
+/// The model with equal Stribeck speeds in both directions. An effect that disturbs the jogs biases each direction
+/// separately, and a fit does not undo this. Empty if the speeds are already equal.
 std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescription& model) {
   const sim::EffectEntry* stribeck = model.find("stribeck");
   const sim::EffectEntry* coulomb = model.find("coulomb");
@@ -243,9 +245,9 @@ std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescriptio
   return even;
 }
 
-/// Refits the last effect from both sides of each of its parameters (unless a scan did), because an effect at breakaway
-/// or impact has several local minima. Does the same from the given base, because a refit without the effect may have
-/// biased the base beyond recovery.
+/// Refits the last effect from both sides of each of its parameters (unless they were scanned), because an effect at
+/// breakaway or impact has several local minima. Also starts from the given base, because the refit without the effect
+/// may have biased the base too far.
 sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
   const sim::DriveDescription& model = finalist.model;
   std::vector<sim::DriveDescription> starts{model};
@@ -270,7 +272,7 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   };
   for (const double factor : {0.55, 1.8}) {
     for (const std::string& id : ids) start_from({id}, factor);
-    // Also all together, because a size and its time constant may be correlated.
+    // Also changes all of them together, because a size and its time constant may be correlated.
     if (ids.size() > 1) start_from(ids, factor);
   }
   for (const sim::DriveDescription& base : bases)
@@ -294,8 +296,8 @@ bool is_confused_with(const sim::EffectInfo& one, const sim::EffectInfo& other) 
   return std::ranges::find(one.confused_with, other.kind) != one.confused_with.end();
 }
 
-/// Fits an effect no more complicated than the leader's on the leader's base, with its fitted and with its original
-/// values, its size first: its own fit may have ended in a local minimum of the base.
+/// Fits an effect, if it has no more parameters than the leader, on the leader's base: with its fitted and with its
+/// original values, its size first. Its own fit may have ended in a local minimum of the base.
 void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
                     const FitOptions& options) {
   if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
@@ -313,8 +315,8 @@ void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescripti
   }
 }
 
-/// A model that contains the base cannot be worse than it: if all fits of an effect failed, it starts again from the
-/// present base, its size alone first.
+/// A model that contains the base cannot be worse than the base. So if all fits of an effect are worse, it starts again
+/// from the present base, and its size is fitted first, alone.
 std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base) {
   std::vector<Start> lost;
   for (const Start& start : looked_at) {
@@ -364,8 +366,8 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
       if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
         starts_of[k].push_back({infos[k], std::move(start)});
     const bool is_scanned = !infos[k]->periodic && starts_of[k].size() > kMostStarts;
-    // A load that shares the friction with the motor follows it in another way than one that has it all: neither way
-    // may push the other out of the scan.
+    // Starts in which motor and load share the friction, and starts in which the load has all of it, are scanned
+    // separately, so that both reach the next stage.
     std::vector<Start> shared;
     if (const sim::ParameterInfo* friction = infos[k]->parameter("load_friction"))
       for (const Start& all_on_load : starts_of[k]) {
@@ -386,10 +388,10 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     if (progress) progress(std::min(1.0, static_cast<double>(++done) / most));
   };
   const auto fit_all = [&](std::vector<Start>& list, const RecordSet& set, const FitOptions& options) {
-    // The base is also fitted to these few windows, for a fair comparison with the candidates.
+    // The base is also fitted to these few windows, so that the comparison with the candidates is fair.
     const double base_error = fit_model(model, set, options).robust;
     for_each_in_parallel(list.size(), [&](std::size_t k) {
-      // An effect that needed a scan on many windows would be lost on a few.
+      // An effect that was found by a scan over many windows could not be found on a few.
       fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
       report();
     });
@@ -425,7 +427,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
     leader = finalists.front();
-    // An effect often confused with it may be behind only because the base was biased.
+    // An effect that is often confused with the leader may have a larger error only because the base was biased.
     for (const Start& start : starts)
       if (is_confused_with(*leader->info, *start.info) && !needs_own_floors(start.model) &&
           std::ranges::find(finalists, start.info, &Start::info) == finalists.end())

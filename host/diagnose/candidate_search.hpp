@@ -17,14 +17,15 @@ struct Candidate {
   SetError training;
   SetError validation;
 
-  /// Error relative to the base, product of training and validation: a real effect lowers both, a chance fit only one.
+  /// Error relative to the base, as the product of training and validation. A real effect lowers both errors, a chance
+  /// fit only one.
   double left = 1.0;
 };
 
 /// Called from any thread with the finished share of the work, 0..1.
 using ShareDone = std::function<void(double)>;
 
-/// Progress of one part of several consecutive ones.
+/// Maps the progress of one part of the work to the range `from` to `to`.
 ShareDone part_of(const ShareDone& progress, double from, double to);
 
 /// Numbers of windows for the first look, the serious fits and the final comparison.
@@ -33,27 +34,28 @@ struct SearchEffort {
   std::size_t medium_windows = 200;
   std::size_t final_windows = 600;
   std::size_t finalists = 4;
-  /// Numbers of windows of another length with as many samples in all.
+  /// The numbers of windows of another length that contain as many samples in total.
   SearchEffort over(double window_s) const;
 
-  const sim::DriveDescription* nominal = nullptr;    ///< the given model: a further start for the base's parameters
+  const sim::DriveDescription* nominal = nullptr;    ///< the given model: its base parameters are a further start
   const std::vector<std::string>* absent = nullptr;  ///< kinds that are no candidates
   std::vector<std::string>* cut_short = nullptr;     ///< receives the kinds for which a fit ended at its budget
 };
 
-/// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates without
-/// gain on a few windows are not fitted further. Sorted by remaining error, best first.
+/// Fits `model` with each applicable effect added. `kinds`: effects that the model already has beyond the base.
+/// Candidates that gain nothing on a few windows are not fitted further. The result is sorted by remaining error, best
+/// first.
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
                                          const ShareDone& progress = {}, const SearchEffort& effort = {});
 
-/// The same for some effects only; each must be applicable.
+/// The same for the given effects only; each must be applicable.
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                     const RecordSet& training, const RecordSet& validation,
                                     const ShareDone& progress = {}, const SearchEffort& effort = {});
 
-/// Errors of a model on both sets, without a fit, relative to the base that it extends.
+/// Errors of an unfitted model on both sets, relative to the base that it extends.
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
                  const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation);
 

@@ -18,7 +18,7 @@ namespace {
 /// Usual breakaway distances of guides, mm (rolling guides: 5 to 100 um).
 constexpr double kBreakawayTravel_mm = 0.02;
 
-/// Dry friction of the lightest drives, as a part of the largest command's torque or force.
+/// Dry friction of the lightest drives, relative to the torque or force of the largest command.
 constexpr double kLeastFriction = 0.02;
 
 /// A screw of 10 mm pitch that turns at 1 rad/s.
@@ -69,8 +69,8 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
   return 1.0;
 }
 
-/// The parameters of a new entry: the mandatory ones, and of the pairs the form of the model's Coulomb friction (both
-/// directions share the Stribeck speeds, which data seldom separate).
+/// The parameters of a new entry: the mandatory ones, and those optional ones that the form of the model's Coulomb
+/// friction requires (equal or by direction). Both directions share the Stribeck speeds, which data seldom separate.
 std::vector<const sim::ParameterInfo*> parameters_to_start(const sim::EffectInfo& info,
                                                            const sim::DriveDescription& model,
                                                            const RecordScales& scales) {
@@ -106,7 +106,7 @@ std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const si
                                            const RecordScales& scales) {
   const auto parameters = parameters_to_start(info, model, scales);
   std::vector<std::vector<double>> rows{{}};
-  // Parameters with equal lists of starts move together (W1 = W2), all others are combined.
+  // Parameters with equal lists of starts change together (W1 = W2); all others are combined.
   std::vector<std::size_t> follows(parameters.size());
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     follows[k] = k;
@@ -139,13 +139,13 @@ std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const si
 bool has_speed(const ComparedRecord& compared) { return compared.prepared.record->has_speed(); }
 bool has_position(const ComparedRecord& compared) { return compared.prepared.record->has_position(); }
 
-/// Whether a sensor's error is looked for in the tachometer's, in the records that have one; otherwise in the torque.
+/// Whether a sensor's error is searched for in the tachometer signal (if a record has one); otherwise in the torque.
 bool shows_in_speed(const sim::EffectInfo& info, const RecordSet& set) {
   return info.stage == sim::Stage::tachometer ||
          (info.stage == sim::Stage::encoder && std::ranges::any_of(set.records, has_speed));
 }
 
-/// The signal over the travel in which a periodic effect shows, and the weight that its harmonic carries there.
+/// The signal over the travel in which a periodic effect shows, and the weight of its harmonic in this signal.
 TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
   // Some 50,000 samples are plenty for a spectrum.
   constexpr std::size_t kSamples = 50000;
@@ -173,7 +173,7 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
   return signal;
 }
 
-/// Without a tachometer the smoothed motion carries an encoder's error e into the force balance: at one speed v,
+/// Without a tachometer, an encoder error e appears in the force balance through the smoothed motion. At a speed v,
 ///   missing = (J v^2 e'' + B v e') / lead.
 void encoder_error_from_effort(const sim::DriveDescription& model, double v, PeriodPeak& peak) {
   const sim::Drive drive(model);
@@ -187,14 +187,14 @@ void encoder_error_from_effort(const sim::DriveDescription& model, double v, Per
   peak.cosine = cosine;
 }
 
-/// Amplitudes of an effect's own harmonic from those of the signal: an encoder's error shows as speed through its
-/// slope, friction and ripple are relative.
+/// Converts the amplitudes of the signal to those of the effect: an encoder error appears in the speed through its
+/// slope; friction and ripple are relative amplitudes.
 void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, bool in_speed, double speed,
                         PeriodPeak& peak) {
   if (info.stage == sim::Stage::encoder && !in_speed) {
     encoder_error_from_effort(model, speed, peak);
   } else if (info.stage == sim::Stage::encoder) {
-    // The smoothed speed carries w e'(x), so the tachometer reads that much less.
+    // The smoothed speed contains w e'(x), so the tachometer reads less than it by this amount.
     const double per_length = peak.period / (2.0 * std::numbers::pi);
     const double cosine = peak.sine * per_length;
     peak.sine = -peak.cosine * per_length;
@@ -257,11 +257,11 @@ bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& mod
   const sim::EffectEntry* coulomb = model.find("coulomb");
   if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");
   if (info.kind == "viscous_asymmetry") return model.find("viscous") != nullptr;
-  if (info.curve) return false;                      // names nothing: never a discovery
-  if (info.kind == "external_torque") return false;  // acts at one time: no other record shows it
+  if (info.curve) return false;                      // gives no cause, so it is never found
+  if (info.kind == "external_torque") return false;  // acts at one time, so no other record shows it
   const auto returns = [](const ComparedRecord& compared) { return comes_back(*compared.prepared.record); };
   if (info.kind == "spring_torque" && std::ranges::none_of(set.records, returns)) return false;
-  if (info.stage == sim::Stage::table) return false;  // the motor does not show it
+  if (info.stage == sim::Stage::table) return false;  // not visible at the motor
   if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
   if (info.stage == sim::Stage::tachometer)
     return std::ranges::all_of(set.records, has_speed) && std::ranges::all_of(set.records, has_position);

@@ -1,4 +1,4 @@
-// Where the fit of a candidate effect begins: models with the effect added at values that suit drive and records.
+// Starting values of the fit of a candidate effect: models with the effect added at values that suit drive and records.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace host {
 
-/// Sizes that the catalogue's starting values are given in.
+/// Scales of the drive and the records; the catalogue gives its starting values relative to them.
 struct RecordScales {
   double travel = 0.0;      ///< mm or m that the records cover
-  double middle = 0.0;      ///< of that travel, mm or m
+  double middle = 0.0;      ///< middle of that travel, mm or m
   double top_speed = 0.0;   ///< rad/s or m/s
   double duration_s = 0.0;  ///< of the longest record
   double first_stamp_s = 0.0;
@@ -20,8 +20,8 @@ struct RecordScales {
 
 RecordScales scales_of(const RecordSet& set);
 
-/// Whether the effect can be added to this model and observed in these records: not yet in the model, not contained in
-/// another effect, and visible in a recorded channel.
+/// Whether the effect can be added to this model and observed in these records: it is not in the model, is not part of
+/// an effect in the model, and is visible in a recorded channel.
 bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set);
 
 /// Whether two effects describe the same part of a drive, so that one drive cannot have both.

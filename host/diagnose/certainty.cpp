@@ -18,7 +18,7 @@ using Kinds = std::vector<std::string>;
 
 bool holds(const Kinds& all, const std::string& kind) { return std::ranges::find(all, kind) != all.end(); }
 
-/// Probability of `certain` together with at least one of a group.
+/// Probability that all effects in `certain` are present together with at least one of a group.
 double probability_of_any(const Diagnosis& diagnosis, const Kinds& group, const Kinds& certain = {}) {
   double sum = 0.0;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
@@ -35,15 +35,15 @@ const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kin
   return found == diagnosis.candidates.end() ? nullptr : &*found;
 }
 
-/// Share of the squared error on held-back records that a candidate explains, in the measure of the verdict.
+/// Share of the squared error on held-back records that a candidate explains, in the measure that decided.
 double taken_by(const JudgedCandidate& candidate) {
   const double left = candidate.before > 0.0 ? candidate.after / candidate.before : 1.0;
   return 1.0 - left * left;
 }
 
-/// The smallest set of most probable effects of which one stands beside `certain` with kClaimed. Of more than two,
-/// those that are denied by themselves are left out. Empty if the rest are too many to test, or if one of them hardly
-/// helps.
+/// The smallest set of most probable effects such that one of them is present beside `certain` with a probability of at
+/// least kClaimed. From a set of more than two, effects that are improbable by themselves are left out. Empty if more
+/// than kLargestGroup remain, or if one of them explains too little.
 Kinds rivals_beside(const Kinds& certain, const Diagnosis& diagnosis) {
   std::vector<const JudgedCandidate*> further;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
@@ -81,8 +81,8 @@ void become_ambiguous(Diagnosis& diagnosis, Kinds group) {
   diagnosis.verdict.alternatives = {std::move(group)};
 }
 
-/// The channel that is farthest above its noise floor before anything is added; shares of the motion's error refer to
-/// it.
+/// The channel with the largest error over its noise floor before effects are added. The shares of the error of the
+/// motion refer to it.
 std::string told_channel(const Diagnosis& diagnosis) {
   const ChannelFigures* worst = diagnosis.base_error.validate.worst();
   return worst == nullptr ? std::string() : worst->name;
@@ -100,7 +100,7 @@ void fill_by_effort(Diagnosis& diagnosis) {
       diagnosis.verdict.found.push_back({effect.group, effect.probability, effect.before, effect.after});
 }
 
-/// One by one, as far as the search fitted the models in between.
+/// Fills the errors after each effect, as far as the search fitted the models in between.
 void fill_by_motion(Diagnosis& diagnosis) {
   const std::string channel = told_channel(diagnosis);
   Kinds kinds;
@@ -143,7 +143,7 @@ void settle_status(Diagnosis& diagnosis) {
   if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kClaimed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
   const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
-  // All named effects are certain together; the other effects of the best candidate are at most a group of rivals.
+  // All named effects are certain together; other effects of the best candidate are at most part of a group of rivals.
   Kinds together;
   if (verdict.status == Status::missing && !hardly_helps)
     for (const std::string& kind : verdict.effects) {

@@ -14,24 +14,24 @@ namespace host {
 
 namespace {
 
-/// Significance level of the block bootstrap over validation windows: 5 %, because the limits of gain and share below
-/// exclude chance (no chance candidate came near them); 1 % on a machine limited by model error, where the limit of
-/// share is low.
+/// Significance level of the block bootstrap over validation windows. 5 % suffices because the limits of gain and share
+/// below exclude chance (no chance candidate came near them). 1 % on a machine limited by model error, where the limit
+/// of share is low.
 constexpr double kLeastConfidence = 0.95;
 constexpr double kLeastRoughConfidence = 0.99;
-/// Least share of the explainable error for an explanation.
+/// Least share of the explainable error that an effect must explain to be claimed.
 constexpr double kLeastShare = 0.35;
 /// The same on a machine limited by model error, whose residual has many small causes.
 constexpr double kLeastRoughShare = 0.1;
-/// A true effect leaves 2 % of the error (late impacts and breakaways), two true effects of three about 15 %.
-/// Substitutes for unknown effects left 40 % and more, two substitutes for an unknown friction curve 20 %. Not tested
-/// on a machine limited by model error.
+/// A true effect leaves 2 % of the error (late impacts and breakaways); two true effects of three leave about 15 %.
+/// Effects that stand in for unknown ones left 40 % and more, two effects that stand in for an unknown friction curve
+/// 20 %. Not applied to a machine limited by model error.
 constexpr double kMostLeft = 0.15;
-/// Least error over noise floor that needs an explanation.
+/// Errors over noise floor above this need an explanation.
 constexpr double kSomething = 1.1;
 
 bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  // If the base is probably complete, an improvement on it is no explanation.
+  // If the base is probably complete, an improvement of it is not an explanation.
   if (std::max(candidate.before, diagnosis.before_train) < ProbabilityScale{}.complete) return false;
   const double least = diagnosis.rough ? kLeastRoughShare : kLeastShare;
   const auto on = [&](double before, double after) {
@@ -63,7 +63,7 @@ std::size_t parameters_of(const JudgedCandidate& candidate) {
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
   constexpr double kNear = 1e-3;
-  constexpr double kStandsForZero = 0.0005;  // of the upper end; no drive has a damping as low as 0.001
+  constexpr double kStandsForZero = 0.0005;  // of the upper bound; every drive has a damping above 0.001
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
@@ -112,7 +112,7 @@ Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis&
 }
 
 double least_validation_s(std::size_t tried) {
-  // All of m blocks improve by chance with probability 2^-m.
+  // The probability that all of m blocks improve by chance is 2^-m.
   return kLuckBlock_s * std::ceil(std::log2(static_cast<double>(std::max<std::size_t>(1, tried)) / kMostLuck));
 }
 

@@ -15,21 +15,21 @@ inline constexpr double kComplete = 1.0;
 /// Largest p-value of an improvement that is claimed.
 inline constexpr double kMostLuck = 0.05;
 
-/// By chance the best of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5
-/// %.
+/// By chance, the best of all candidates lowers the error of a complete model by up to 1.6 %; a gain below 5 % is never
+/// claimed.
 inline constexpr double kLeastGain = 0.05;
 
-/// Explained part of the explainable squared error, before^2 - kComplete^2, 0..1; 0 if nothing was explainable.
+/// Explained share of the explainable squared error, before^2 - kComplete^2; 0..1. 0 if nothing is explainable.
 double explained_share(double before, double after);
 
-/// The same share on the training data, with or without the windows of late breakaways or impacts, whose times no model
-/// predicts.
+/// The same share on the training data. The larger one of with and without the windows of late breakaways or impacts,
+/// because no model predicts their times.
 double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Number of parameters that a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);
 
-/// Why a candidate is not claimed.
+/// The reason why a candidate is not claimed.
 enum class Reservation {
   none,
   no_gain,      ///< it lowers the error too little, or not on both training and validation data
@@ -41,11 +41,12 @@ enum class Reservation {
 /// The first reservation, in the order above.
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
-/// Parameters of the effects in `kinds` that are at a bound of their range, "compliance: damping_ratio". A bound at
-/// zero, or where a spring is rigid, means that this part of the effect is absent, which is allowed.
+/// Parameters of the effects in `kinds` that are at a bound of their range, for example "compliance: damping_ratio". A
+/// bound at zero, or the upper bound of a stiffness, is allowed: that part of the effect is then absent.
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
 
-/// Positions so far from the records' travel that the effect hardly changes over it and stands in for a constant.
+/// Parameters that are positions so far outside the travel of the records that the effect hardly changes over the
+/// travel and stands in for a constant.
 std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
                                                  const std::vector<std::string>& kinds, const RecordSet& training);
 

@@ -30,8 +30,8 @@ namespace host {
 
 namespace {
 
-/// A machine is limited by model error (rough) if half of the best model's windows lie this far above their noise
-/// floors.
+/// A machine is limited by model error (rough) if half of the windows of the best model have an error of more than this
+/// multiple of their noise floor.
 constexpr double kRoughError = 10.0;
 
 }  // namespace
@@ -86,7 +86,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   return result;
 }
 
-/// Whether the regression took the motion from the speed channel and did not use the position.
+/// Whether the regression used the speed channel for the motion and ignored the position.
 bool ignores_position(const EffortRows& rows) { return rows.by_speed && rows.has_position; }
 
 /// Whether the motion shows an effect that the force-balance regression cannot see.
@@ -100,8 +100,8 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   return std::ranges::none_of(verdict.effects, seen);
 }
 
-/// Whether the motion names effects that take most of the squared error on both sets, where the force balance names
-/// none: while the axis slides, an effect at reversals or of the encoder leaves the balance little to see.
+/// Whether the motion shows effects that explain most of the squared error on both sets, while the force balance shows
+/// none. Effects at reversals and of the encoder hardly change the torque or force while the axis slides.
 bool explains_what_the_balance_does_not(const Diagnosis& by_motion, const Diagnosis& by_effort) {
   constexpr double kMost = 0.5;
   return by_effort.verdict.status == Status::unexplained && by_motion.verdict.status == Status::missing &&
@@ -109,14 +109,14 @@ bool explains_what_the_balance_does_not(const Diagnosis& by_motion, const Diagno
          explained_share(by_motion.before_validate, by_motion.after_validate) > kMost;
 }
 
-/// Whether the motion can explain the rest after the regression's effects: more than noise remains, but the machine is
-/// not limited by model error.
+/// Whether the motion can add to the effects of the regression: the residual exceeds noise, but the machine is not
+/// limited by model error.
 bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
   const SetError left = error_of(sim::Drive(by_effort.best), validation);
   return left.combined > kExplained && !is_rough(left);
 }
 
-/// Whether only noise remains.
+/// Whether the named effects leave only noise.
 bool completes(const Diagnosis& by_motion) {
   return !by_motion.rough && !by_motion.verdict.effects.empty() &&
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
@@ -136,8 +136,8 @@ bool goes_further(const Diagnosis& by_effort, const Diagnosis& by_motion) {
          holds_all(known, by_motion.verdict.effects);
 }
 
-/// One diagnosis from the regression's effects and the further ones of the motion, by the motion's errors. What the
-/// regression cannot tell apart stays a group.
+/// Joins the effects of the regression and the further ones of the motion in one diagnosis with the errors of the
+/// motion. Effects that the regression cannot tell apart stay a group.
 Diagnosis together(const sim::DriveDescription& given, Diagnosis by_effort, Diagnosis further) {
   const auto put_first = [](auto& list, const auto& first) { list.insert(list.begin(), first.begin(), first.end()); };
   const DiagnosisVerdict& first = by_effort.verdict;
@@ -174,7 +174,7 @@ bool acts_late(const sim::EffectInfo& effect) {
 
 using Timed = std::shared_ptr<const std::vector<Record>>;
 
-/// `timed`: the records that the diagnosis refers to, if they are not the measured ones.
+/// `timed`: receives the records that the diagnosis refers to, if they are not the measured ones.
 Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent, Timed& timed) {
   if (progress) progress(0.01);
@@ -205,8 +205,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     result.screen = screen;
     return result;
   };
-  // Empty if the search by motion decides. `rough`: the motion has shown that the machine is limited by model error, so
-  // the motion cannot decide.
+  // Diagnosis by the regression; empty if the search by motion must decide. `rough`: the motion has shown that the
+  // machine is limited by model error and so cannot decide.
   const auto by_effort = [&](bool rough) -> std::optional<Diagnosis> {
     if (!split.moves_enough || (!has_linear_form(model) && !rough)) return {};
     const std::shared_ptr<const EffortScreen> seen = screen_of(model, split);
@@ -228,7 +228,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     return adds ? together(model, std::move(diagnosis), std::move(further)) : diagnosis;
   };
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
-  // If the motion is not explained, use the regression's answer.
+  // Returns the result of the regression if the motion is not explained.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
     if (!only_in_the_effort) return by_motion;
     const bool explains =
@@ -243,8 +243,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       const bool tells = !screen->chosen.empty();
       const bool ends_here = screen->rows.steady && (tells || !ignores_position(screen->rows));
       if (ends_here || (tells && !may_be_completed(*diagnosis, split.validation))) return *std::move(diagnosis);
-      // An effect that does not show in the torque or force while the axis slides, such as a current limit, shows in
-      // the motion.
+      // Effects that do not change the torque or force while the axis slides, such as a current limit, show in the
+      // motion.
       over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen) ||
@@ -276,8 +276,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   return unless_unexplained(*std::move(over_long_windows));
 }
 
-/// Kinds that are no candidates: those that the machine is known not to have, delays that the logged torque or force
-/// explains, and those that a sensor on the table excludes.
+/// Kinds that are not candidates: effects that the machine is known not to have, delays that the logged torque or force
+/// explains, and effects that a sensor on the table excludes.
 std::vector<std::string> without_excluded(std::vector<std::string> absent, const Measurements& measured,
                                           const TableStudy* table) {
   if (timing_explains_delays(measured.training_records()))

@@ -35,19 +35,20 @@ struct EffortError {
 /// A candidate and its result on validation data.
 struct JudgedCandidate {
   std::vector<std::string> kinds;
-  double before = 0.0;  ///< combined
+  double before = 0.0;  ///< combined error
   double after = 0.0;
   double train_after = 0.0;
   double train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
-  double confidence = 0.0;          ///< that the improvement is not by chance, 0..1
-  double luck = 1.0;                ///< probability that the best of all that were tried gains as much by chance, 0..1
-  double probability = 0.0;         ///< of this mechanism given these records, 0..1
+  double confidence = 0.0;          ///< probability that the improvement is not by chance, 0..1
+  double luck = 1.0;                ///< p-value of the gain, as the best of all tried candidates, 0..1
+  double probability = 0.0;         ///< probability of these effects given these records, 0..1
   sim::DriveDescription model;
   std::vector<std::string> on_bound = {};  ///< parameters that reached a bound of their range
 };
 
-/// Effects that are certain, and the error before and after them as a share of the signal on held-back records: of the
-/// torque or force if the force balance decided, else of the channel that is farthest above its noise floor.
+/// Effects that are certain, and the error before and after they are added, as a share of the signal on held-back
+/// records. The signal is the torque or force if the force balance decided, else the channel with the largest error
+/// over its noise floor.
 struct CertainEffects {
   std::vector<std::string> kinds;
   double probability = 0.0;
@@ -63,8 +64,8 @@ struct Remains {
 
 struct DiagnosisVerdict {
   Status status = Status::adequate;
-  std::vector<std::string> effects;                    ///< what to add, best first
-  std::vector<std::string> parameters;                 ///< base parameters that were off
+  std::vector<std::string> effects;                    ///< effects to add, best first
+  std::vector<std::string> parameters;                 ///< base parameters that were wrong
   std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
   std::string next_experiment;
   std::string explanation;
@@ -72,26 +73,26 @@ struct DiagnosisVerdict {
   std::optional<Remains> remains;       ///< error that the named effects leave; empty if only noise remains
   std::string coordinate;               ///< if unexplained: the coordinate that carries most of the residual
   std::string where;                    ///< the range of that coordinate, in words
-  double probability_nothing = 0.0;     ///< that nothing is missing, 0..1
-  std::vector<std::string> data_sheet;  ///< contradictions of data and known values, in words
-  double probability_other = 0.0;       ///< that the missing effect is no candidate, 0..1
+  double probability_nothing = 0.0;     ///< probability that nothing is missing, 0..1
+  std::vector<std::string> data_sheet;  ///< contradictions between data and known values, in words
+  double probability_other = 0.0;       ///< probability that the missing effect is no candidate, 0..1
 };
 
-/// Start and result.
+/// The inputs and the result of a diagnosis.
 struct Diagnosis : PreparedSets {
   Diagnosis() = default;
   explicit Diagnosis(PreparedSets sets) : PreparedSets(std::move(sets)), best(base) {}
 
-  std::vector<LogFault> log;  ///< doubtful points of the records
+  std::vector<LogFault> log;  ///< faults of the records
   bool rough = false;         ///< limited by model error: even the best model is far above the noise floors
   FigureRows rows;
   ErrorOnSets given_error, base_error, best_error;  ///< of the given model, of `base`, of `best`
   std::optional<EffortError> effort;
-  double given_train = 0.0, given_validate = 0.0;    ///< combined, of the given model
-  double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
+  double given_train = 0.0, given_validate = 0.0;    ///< combined errors of the given model
+  double before_train = 0.0, before_validate = 0.0;  ///< combined errors of the refitted base
   double before_train_robust = 0.0;                  ///< SetError::robust; 0 if the force balance decided
-  double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
-  std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
+  double after_train = 0.0, after_validate = 0.0;    ///< combined errors with the effects of the verdict
+  std::vector<ErrorRegion> where;                    ///< regions of the error of the refitted base, all records
   ResidualTests residual;  ///< how the torque or force residual of `best` depends on each coordinate
   std::size_t tried = 0;   ///< candidates compared on validation data; the others were worse in training
   std::vector<JudgedCandidate> candidates;  ///< best first
@@ -99,15 +100,15 @@ struct Diagnosis : PreparedSets {
   DiagnosisVerdict verdict;
   sim::DriveDescription best;                        ///< with the effects of the verdict; the base if it names none
   std::shared_ptr<const EffortScreen> screen;        ///< result of the force-balance regression; may be absent
-  std::shared_ptr<const std::vector<Record>> timed;  ///< the sets' records, timed beside the found effects
-  std::shared_ptr<const TableStudy> table;           ///< result of a sensor on the table; empty without one
-  bool by_effort = false;  ///< the force balance decided: errors of the torque or force over the sensors' noise
+  std::shared_ptr<const std::vector<Record>> timed;  ///< records of the sets; time offsets fitted with the effects
+  std::shared_ptr<const TableStudy> table;           ///< result of a sensor on the table; empty if there is none
+  bool by_effort = false;  ///< the force balance decided; the errors are those of torque or force over sensor noise
 
-  /// Whether candidates were compared by the error that compare prints.
+  /// Whether candidates were compared by the same error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
 
-  /// A combined error on held-back records, converted to the measure of `base_error`: candidates are compared over the
-  /// noise floors of the best of them, but the error of a single model is reported over its own.
+  /// Converts a combined error on held-back records to the scale of `base_error`. Candidates are compared over the
+  /// noise floors of the best of them, but the error of a single model is reported over its own noise floors.
   double told(double judged) const {
     const double now = base_error.validate.combined;
     return judged_as_compared() && before_validate > 0.0 && now > 0.0 ? judged * now / before_validate : judged;
@@ -118,23 +119,24 @@ struct Diagnosis : PreparedSets {
   }
 };
 
-/// Length of the windows for a machine that is limited by model error: 10 ms, in which the position shows a force as a
-/// low-pass of 100 Hz would, and at least ten samples.
+/// Length of the windows for a machine that is limited by model error: 10 ms and at least ten samples. The position
+/// over 10 ms shows a force like a low-pass of 100 Hz.
 double rough_window_s(const std::vector<const Record*>& records);
 
-/// Whether half of the windows are far above their noise floors: such a machine is limited by model error.
+/// Whether half of the windows are so far above their noise floors that the machine is limited by model error.
 bool is_rough(const SetError& error);
 
-/// Measure for a machine that is limited by model error: torque or force, if the model has an inverse and the axis
-/// slides for a second in both sets. `validation` may be empty.
+/// Measure for a machine that is limited by model error: torque or force if the model has an inverse and the axis
+/// slides for a second in both sets, otherwise motion. `validation` may be empty.
 Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                       const std::vector<const Record*>& validation);
 
 /// Compares candidates by the motion over windows of kWindow_s. If the machine turns out to be limited by model error,
-/// it compares them again by the torque or force, in which a missing effect shows before it accumulates to a drift; if
-/// that is not possible, by the motion over short windows. `before`: an earlier diagnosis of the same records, whose
-/// measure is used again, so that the errors can be compared. `absent`: kinds of effects that the machine is known not
-/// to have. Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
+/// it compares them again by the torque or force, in which a missing effect shows before its error accumulates to a
+/// drift; if that is not possible, by the motion over short windows. `before`: an earlier diagnosis of the same
+/// records, whose measure is used again, so that the errors can be compared. `absent`: kinds of effects that the
+/// machine is known not to have. Throws Failure(bad_input) for records that cannot be compared. Keeps references to the
+/// records.
 Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                    const Diagnosis* before = nullptr, const std::vector<std::string>& absent = {});
 

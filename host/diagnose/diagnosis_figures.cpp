@@ -17,7 +17,8 @@ namespace host {
 
 namespace {
 
-/// The period of the model's ripples, else that of the likeliest candidate that has one, else a turn of the shaft.
+/// The period of the model's ripples; without one, that of the most probable candidate that has a period; without one,
+/// a turn of the shaft.
 double period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis) {
   const auto has_period = [](const sim::EffectEntry& entry) { return entry.has("period"); };
   if (std::ranges::none_of(model.effects, has_period))
@@ -201,7 +202,7 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
   Prediction before, after;
   predict(sim::Drive(diagnosis.base), compared.prepared, before);
   predict(sim::Drive(best), compared.prepared, after);
-  // Between windows, and before the first, nothing is predicted.
+  // There is no prediction between the windows or before the first one.
   const auto shown = [&](const std::vector<double>& predicted, const std::vector<double>* less) {
     std::vector<double> values(record.size(), std::nan(""));
     for (const Window& window : compared.prepared.windows)
@@ -240,7 +241,7 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
 
 namespace {
 
-/// Whether it lowers the error on both sets by the least significant gain.
+/// Whether it lowers the error on both sets by at least kLeastGain.
 bool changes_something(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   return candidate.after < (1.0 - kLeastGain) * candidate.before &&
          candidate.train_after < (1.0 - kLeastGain) * diagnosis.before_train;
@@ -257,7 +258,7 @@ bool is_named(const JudgedCandidate& candidate, const DiagnosisVerdict& verdict)
   });
 }
 
-/// Number of the candidate's effects that the verdict names. Rivals replace one another, so they do not add.
+/// Number of effects that the verdict names. Of a group of rivals, only one counts.
 std::size_t chosen_size(const DiagnosisVerdict& verdict) {
   return verdict.status == Status::ambiguous ? 1 : verdict.effects.size();
 }

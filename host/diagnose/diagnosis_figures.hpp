@@ -7,11 +7,11 @@
 
 namespace host {
 
-/// The first figures: for each of the effects its residual and its fitted curve (effect_plot). `rivals`: the records
+/// The first figures: for each effect the residual without it and its fitted curve (effect_plot). `rivals`: the records
 /// cannot tell the effects apart.
 void add_found(Report& report, const std::vector<FoundEffect>& found, bool rivals);
 
-/// Instead of these figures, if nothing is named: the residual over the coordinate that carries most of it.
+/// If no effect is named: the residual over the coordinate on which it depends most.
 void add_unexplained(Report& report, const Diagnosis& diagnosis);
 
 /// RMS errors of one channel on validation data, in its own unit.
@@ -35,21 +35,21 @@ inline constexpr const char* kNoiseFloorMeans =
     "of the prediction.";
 
 /// The residual on validation data over the coordinates in which effects show: of the refitted base and, if effects
-/// were added, of `best`.
+/// were added, also of `best`.
 void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added);
 
 /// The catalogue's remedies for each of the effects.
 std::vector<std::string> remedies(const std::vector<std::string>& kinds);
 
 /// Whether the residual is noise: its autocorrelation and its correlation with the command, with the bounds for white
-/// noise, and the part of it that depends on each coordinate.
+/// noise, and the share of it that depends on each coordinate.
 void add_whiteness(Report& report, const Diagnosis& diagnosis);
 
 /// The first validation record: measured, predicted by `best`, and the errors.
 void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added);
 
-/// Error over noise floor without and with each candidate. The named effects come first, together with those that the
-/// records cannot tell from them; candidates that change nothing are folded.
+/// Error over noise floor without and with each candidate. The named effects come first, together with the effects that
+/// the records cannot tell from them. Candidates that change nothing are folded.
 void add_candidates(Report& report, const Diagnosis& diagnosis);
 
 }  // namespace host

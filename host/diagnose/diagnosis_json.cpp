@@ -44,7 +44,8 @@ std::string measure_name(const Diagnosis& diagnosis) {
 
 nlohmann::json combined_json(double train, double validate) { return {{"train", train}, {"validate", validate}}; }
 
-/// In the measure that decided: if that is the motion over the usual windows, the figures of ErrorOnSets.
+/// Combined errors in the measure that decided. If that is the motion over the usual windows, they are those of
+/// ErrorOnSets.
 nlohmann::json combined_json(const Diagnosis& diagnosis) {
   const auto of = [](const ErrorOnSets& error) { return combined_json(error.train.combined, error.validate.combined); };
   if (diagnosis.judged_as_compared())
@@ -79,7 +80,7 @@ nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kin
   return document;
 }
 
-/// Candidates are compared over the same noise floors; their scale is that of the base's error.
+/// Candidates are compared over the same noise floors. Their errors are scaled to that of the base.
 nlohmann::json candidate_json(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const std::string& kind : candidate.kinds)

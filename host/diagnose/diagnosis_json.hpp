@@ -8,7 +8,7 @@
 namespace host {
 
 nlohmann::json to_json(const Diagnosis& diagnosis);
-/// `model_path` is where the improved model went; may be empty.
+/// `model_path`: file of the improved model; may be empty.
 nlohmann::json to_json(const Improvement& improvement, const std::string& model_path);
 
 }  // namespace host

@@ -61,7 +61,7 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
   block.sentences.push_back(verdict.explanation);
   block.sentences.emplace_back(kNoiseFloorMeans);
   block.sentences.push_back("Next: " + verdict.next_experiment);
-  // An incomplete search is no objection to a model that leaves only noise.
+  // An incomplete search does not matter if the named effects leave only noise.
   const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= kExplained;
   if (!diagnosis.not_searched.empty() && !is_explained)
     block.sentences.push_back(fmt::format("Search incomplete (simulation budget exhausted) for: {}.",
@@ -111,7 +111,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const std::string& model_nam
   report.verdict(verdict_block(diagnosis, found));
   add_found(report, found, diagnosis.verdict.status == Status::ambiguous);
   if (diagnosis.verdict.status == Status::unexplained) add_unexplained(report, diagnosis);
-  report.section("How large the error is", "");
+  report.section("Size of the error", "");
   add_errors(report, diagnosis);
   if (!diagnosis.candidates.empty()) {
     report.section("What was tried");

@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// Verdict in plain words, errors, where the model fails, candidates, and the residual before and after against the
-/// coordinates in which effects show. `model_name` appears in the title.
+/// The verdict in words, the errors, the regions with the largest error, the candidates, and the residual before and
+/// after over the coordinates in which effects show. `model_name` appears in the title.
 Report diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name);
 
 /// The same, to a file. Throws Failure(bad_input) when it cannot write.

@@ -21,14 +21,16 @@ namespace host {
 
 namespace {
 
-/// The best model of a simulated drive leaves one to five times the sensor noise; real machines leave ten to sixty.
+/// Multiple of the sensor noise. The best model of a simulated drive leaves one to five times the sensor noise, that of
+/// a real machine ten to sixty.
 constexpr double kFarAboveNoise = 6.0;
 /// Most effects named in one answer.
 constexpr std::size_t kMostEffects = 6;
-/// The torque or force counts as explained if this share of the error remains (a tenth of its square).
+/// The torque or force counts as explained if at most this share of the RMS error remains (a tenth of the squared
+/// error).
 constexpr double kExplainedPart = 0.316;
 
-/// The kinds of a step beyond the first `known`.
+/// The titles of the effects of a step beyond the first `known`.
 std::string described(const ScreenedModel& model, std::size_t known) {
   std::vector<std::string_view> titles;
   for (std::size_t k = known; k < model.kinds.size(); ++k) titles.push_back(sim::find_effect(model.kinds[k])->title);
@@ -97,10 +99,10 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
   return verdict;
 }
 
-/// Every tried kind with its probability: later steps share the probability of the earlier ones, and a kind chosen
-/// before the last step represents its group.
+/// Lists every tried kind with its probability. The probabilities of a later step are multiplied by that of the earlier
+/// steps. A kind chosen before the last step stands for its group.
 void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
-  const std::size_t last = screen.chosen.size() - 1;  // beyond all where nothing was chosen
+  const std::size_t last = screen.chosen.size() - 1;  // above every step if none was chosen
   std::size_t whole = 0;
   double held = 1.0, others = 0.0;
   for (std::size_t step = 0; step < screen.steps.size(); ++step) {
@@ -165,8 +167,8 @@ JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   if (screen.empty()) return false;
   const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
-  // At steady speeds no error accumulates in the motion; a residual within noise then only means that nothing is
-  // visible.
+  // At steady speeds no error accumulates in the motion. A residual within noise then only means that these records
+  // show no effect.
   if (screen.rows.steady && (!screen.chosen.empty() || left > kSmall)) return true;
   if (before > kFarAboveNoise && left < kExplainedPart * before) return true;
   if (left < kFarAboveNoise) return false;
@@ -215,8 +217,8 @@ Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& s
 
 namespace {
 
-/// Whether the base fits each set, but with different values, as after a warm-up between the records. If so, adds that
-/// to the verdict.
+/// Whether the base fits each set, but with different values, for example after a warm-up between the records. If so,
+/// adds this to the verdict.
 bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdict) {
   constexpr double kSuits = 1.5, kFails = 2.0;  // times the residual of the base on the set to which it was fitted
   if (!screen.judge_alone) return false;
@@ -250,7 +252,7 @@ std::string said_by_the_motion(const Diagnosis& diagnosis) {
   if (!diagnosis.by_effort || screen == nullptr || screen->chosen.empty() || screen->rows.steady) return {};
   const double before = diagnosis.base_error.validate.combined, after = diagnosis.best_error.validate.combined;
   const char* said = after < kHalfOfTheSquare * before ? "decreases, which confirms it"
-                     : after < kHardly * before        ? "falls a little"
+                     : after < kHardly * before        ? "decreases slightly"
                      : after > before / kHardly
                          ? "increases, which does not confirm this effect; record more motion that excites it"
                          : "does not change";
@@ -259,7 +261,7 @@ std::string said_by_the_motion(const Diagnosis& diagnosis) {
 }
 
 void name_coordinate(Diagnosis& diagnosis) {
-  // 25 knots explain this much of any residual, so less is not reported.
+  // A curve with 25 knots explains this share of any residual, so a smaller share is not reported.
   constexpr double kLeastShare = 0.2;
   DiagnosisVerdict& verdict = diagnosis.verdict;
   if (verdict.status != Status::unexplained) return;
@@ -272,8 +274,8 @@ void name_coordinate(Diagnosis& diagnosis) {
   const EffortScreen& screen = *diagnosis.screen;
   if (differs_between_records(screen, verdict)) return;
   std::optional<FreeCurveFit> curve = fit_free_curve(screen);
-  // Anything proportional to torque explains torque, so a curve over it is offered only if the predictions support it
-  // and it beats the others.
+  // Every quantity proportional to torque explains torque. So a curve over torque is offered only if the prediction of
+  // the motion supports it and it explains more than the others.
   if (verdict.coordinate == "current")
     if (std::optional<FreeCurveFit> over_current = fit_free_curve(screen, "current");
         over_current && (!curve || over_current->model.validate < curve->model.validate))
@@ -296,10 +298,10 @@ void name_coordinate(Diagnosis& diagnosis) {
   };
   const auto none = diagnosis.residual.dependences.end();
   const auto named = along(verdict.coordinate), taken = along(coordinate);
-  // Every residual is correlated over short times.
+  // Every residual is correlated over short times, so a dependence on time does not count here.
   if (named != none && named->coordinate != "time" && named->share >= share) return;
   if (verdict.coordinate == coordinate) return;
-  // A curve that explains much of the torque in sliding motion, but none of the prediction error, fits by chance.
+  // A curve that explains much of the torque in sliding motion, but nothing of the prediction error, fits by chance.
   constexpr double kShows = 0.02;
   if (taken != none && std::max(taken->share, taken->in_detail) < kShows) return;
   verdict.coordinate = coordinate;

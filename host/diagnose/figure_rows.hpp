@@ -1,4 +1,4 @@
-// The rows of the records that every model of a diagnosis is measured on, in the figures that compare prints.
+// The rows of the records on which every model of a diagnosis is measured, with the same error figures as compare.
 #pragma once
 
 #include <vector>
@@ -21,19 +21,19 @@ struct FigureRows {
   std::vector<FigureRecord> train, validate;
   sim::DataSheet data;  ///< as given, without the sensor properties found in the records
 
-  /// Error of each set as compare reports it: the time at which a logged current acts is estimated beside the model.
-  /// Throws as figure_set() does.
+  /// Error of each set as compare reports it. The time offset of a logged current is estimated for this model. Throws
+  /// as figure_set() does.
   ErrorOnSets error_of(sim::DriveDescription model) const;
 };
 
-/// All windows of the records; without a validation record, the training windows and the held-back ones. `split`: the
+/// All windows of the records. Without a validation record, the held-back windows are the validation data. `split`: the
 /// records of this model already split into the usual windows, if available.
 FigureRows figure_rows(const sim::DriveDescription& given, const Measurements& measured,
                        const PreparedSets* split = nullptr);
 
 /// Whether a model with `error` predicts held-back records worse than one with `given`: its error over noise floor and
-/// the RMS error of a channel are larger; or the RMS errors of all channels are larger, whatever its own noise floors
-/// are.
+/// the RMS error of a channel are larger, or the RMS errors of all channels are larger, even if its error over noise
+/// floor is not.
 bool is_worse(const ErrorFigures& error, const ErrorFigures& given);
 
 }  // namespace host

@@ -41,7 +41,7 @@ double sum_of_squares(const Values& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// Share of the trace's square in its means over the coordinate, 0..1.
+/// Share of the squared trace that its means over the coordinate explain, 0..1.
 double carried_share(const ResidualEffort& samples, const Values& trace, const ResidualCoordinate& over) {
   double carried = 0.0;
   for (const ScatterSeries& curve : direction_curves(samples, trace, over))
@@ -50,7 +50,7 @@ double carried_share(const ResidualEffort& samples, const Values& trace, const R
   return carried / sum_of_squares(trace);
 }
 
-/// Coordinates in which the trace could show: those of the catalogue, with the period of a ripple; for a free curve its
+/// Coordinates over which the trace may show: those of the catalogue, with the period of a ripple; for a free curve its
 /// own coordinate.
 std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, const sim::EffectEntry& entry,
                                                const ResidualEffort& samples, sim::DriveKind kind) {
@@ -74,8 +74,8 @@ std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, cons
   return all;
 }
 
-/// Whether a ripple blurs in a sample: it averages over 5 ms, in which the axis passes more than an eighth of the
-/// shortest period (at an eighth, 97 % of the amplitude are left).
+/// Whether a sample blurs a ripple. A sample is an average over 5 ms. It is blurred if the axis passes more than an
+/// eighth of the shortest period in this time (at an eighth, 97 % of the amplitude remain).
 std::vector<bool> blurred_samples(const FoundEffect& effect, const sim::DriveDescription& model) {
   constexpr double kMostPeriods = 0.125;
   constexpr std::ptrdiff_t kFewest = 200;
@@ -88,7 +88,7 @@ std::vector<bool> blurred_samples(const FoundEffect& effect, const sim::DriveDes
   return blurred;
 }
 
-/// NaN for samples without a value of the coordinate.
+/// Fills the trace, with NaN for samples without a value of the coordinate.
 void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown) {
   const sim::DriveDescription less = without_kind(model, effect.kind);
   std::vector<ResidualEffort> both;
@@ -125,7 +125,7 @@ Peak peak_of(const Curves& curves) {
   return peak;
 }
 
-/// The 0.4 s of the strongest record in which the trace is strongest.
+/// The 0.4 s in which the trace is strongest, in the strongest record.
 std::array<double, 2> strongest_seconds(const FoundEffect& effect) {
   constexpr double kLength_s = 0.4;
   const Values& t_s = effect.without.t_s;
@@ -157,7 +157,8 @@ Peak peak_in_cutout(const FoundEffect& effect) {
   return peak;
 }
 
-/// The means and the lines, with some room: a bin whose samples spread far must not flatten all others.
+/// Range of the means and the lines, with a margin. It ignores the spread of the samples in a bin, which could flatten
+/// all curves.
 std::pair<double, double> range_of_means(const ScatterPlot& plot) {
   constexpr double kMargin = 0.25;
   double low = 0.0, high = 0.0;
@@ -168,7 +169,7 @@ std::pair<double, double> range_of_means(const ScatterPlot& plot) {
   return {low - margin, high + margin};
 }
 
-/// The encoder's error over one period of the travel.
+/// The largest encoder error over one period of the travel.
 double largest_encoder_error(const sim::DriveDescription& model, double period) {
   constexpr int kPlaces = 200;
   const sim::Drive drive(model);
@@ -177,14 +178,15 @@ double largest_encoder_error(const sim::DriveDescription& model, double period) 
   return largest;
 }
 
-/// The parameter that describes the effect better than a torque does; empty if there is none.
+/// The parameter that describes the size of an effect better than a torque does; empty if there is none.
 std::string_view main_parameter(const sim::EffectInfo& info) {
   const bool acts_elsewhere =
       info.stage == sim::Stage::command || info.stage == sim::Stage::motor || info.stage == sim::Stage::mechanics;
   return acts_elsewhere && !info.periodic ? info.parameters.front().id : std::string_view{};
 }
 
-/// A unit in which the value of a parameter reads well, and the factor to it. The unit of a key follows its last "_".
+/// A unit in which the value of a parameter is easy to read, and the factor to it. The key of the parameter ends with
+/// its unit, after the last "_".
 struct ShownUnit {
   std::string name;
   double factor = 1.0;
@@ -199,7 +201,7 @@ ShownUnit shown_unit(std::string_view key, double value) {
   return {unit};
 }
 
-/// FoundEffect::size of a model; its trace is read in the bin of `peak`, in a cutout at its sample.
+/// FoundEffect::size of a model. The trace is read in the bin at `peak`, or in a cutout at the sample at `peak`.
 double size_in(const FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown,
                const Peak& peak) {
   const sim::EffectInfo& info = *sim::find_effect(effect.kind);
@@ -215,10 +217,11 @@ double size_in(const FoundEffect& effect, const sim::DriveDescription& model, co
   return std::abs(direction_curves(other.without, other.trace, other.over)[peak.curve].y[peak.bin]);
 }
 
-/// 95 % interval of the size, by its slopes over the effect's parameters and their covariance (delta method).
+/// 95 % interval of the size, from its derivatives with respect to the effect's parameters and their covariance (delta
+/// method).
 std::optional<std::array<double, 2>> interval_of(const FoundEffect& effect, const sim::DriveDescription& model,
                                                  const RecordSet& shown, const RecordSet& training, const Peak& peak) {
-  constexpr double kMostStep = 0.05;  // relative: the slope is needed near the fitted value
+  constexpr double kMostStep = 0.05;  // relative; the derivative must hold near the fitted value
   const auto [vector, values, covariance] = covariance_of(model, training);
   if (covariance.size() == 0) return {};
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());
@@ -334,7 +337,7 @@ void append_cutout(const FoundEffect& effect, ScatterPlot& plot) {
   plot.series = {{"residual, forward", SeriesRole::residual, SeriesStyle::points, {}, {}, {}, {}},
                  {"residual, backward", SeriesRole::other, SeriesStyle::points, {}, {}, {}, {}},
                  {"effect", SeriesRole::model, SeriesStyle::line, {}, {}, {}, {}}};
-  constexpr double kGap = 3.0;  // averages without a sample: there the axis stands or turns
+  constexpr double kGap = 3.0;  // averages without a sample, in which the axis stands or reverses
   const ResidualEffort& samples = effect.without;
   ScatterSeries& line = plot.series.back();
   for (std::size_t k = 0; k < effect.trace.size(); ++k) {

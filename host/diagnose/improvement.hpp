@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// One step: the effects added since the last step, and the errors of the model with them.
+/// One step: the effects added since the previous step, and the errors of the model with them.
 struct Rung {
   std::vector<std::string> added;
   double train = 0.0, validate = 0.0;  ///< combined, in the measure that decided
@@ -24,12 +24,12 @@ struct Improvement {
   sim::DriveDescription model;
   Diagnosis first;    ///< the diagnosis that the ladder began with
   ErrorOnSets error;  ///< of `model`
-  /// True if `model` is the given one, because the result of the last step predicts held-back records worse.
+  /// True if `model` is the given one, because the model of the last step predicts held-back records worse.
   bool kept_given = false;
-  bool is_refused = false;  ///< and the last step was more than a refit without effect
+  bool is_refused = false;  ///< kept_given after a step that added an effect or clearly raised the error
 };
 
-/// Limit of steps; no drive has needed as many.
+/// Largest number of steps; no drive has needed as many.
 inline constexpr int kMostRungs = 5;
 
 /// Never adds an effect that does not replicate on validation data, nor a kind in `absent`. `known`: the diagnosis of
@@ -38,7 +38,7 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
                     const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
                     int most_rungs = kMostRungs);
 
-/// The model with one effect added at its best fit, whether or not it is significant; every parameter carries its 95 %
+/// The model with one effect added at its best fit, whether it is significant or not. Every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) if the effect cannot be added to this model or does not show in these
 /// records.
 struct Addition {
@@ -51,8 +51,8 @@ struct Addition {
 };
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 
-/// The model with a curve over a coordinate added; if `over` is empty, over the coordinate with the smallest validation
-/// error. A curve gives no cause and fits any shape. Throws Failure(refused) if no curve lowers the error.
+/// The model with a curve over a coordinate added. If `over` is empty, the coordinate with the smallest validation
+/// error is used. A curve can take any shape and gives no cause. Throws Failure(refused) if no curve lowers the error.
 Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured);
 
 /// Writes intervals and origin into a fitted model; returns the estimate of each parameter.

@@ -35,7 +35,7 @@ std::vector<std::string> added_kinds(const Improvement& improvement) {
   return added;
 }
 
-/// Errors of the refitted base beside those of the resulting model.
+/// Errors of the refitted base and of the resulting model.
 std::vector<ChannelError> channels_of(const Improvement& improvement) {
   return channel_errors(improvement.ladder.front().error.validate, improvement.error.validate,
                         improvement.first.effort);
@@ -45,7 +45,7 @@ std::string headline(const Improvement& improvement) {
   if (improvement.is_refused) return "No better model was found; the given one is kept";
   const std::vector<std::string> added = added_kinds(improvement);
   if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
-  constexpr double kLower = 0.95;  // of the error: a refit that changes less is no change
+  constexpr double kLower = 0.95;  // of the error; a refit that lowers it by less does not count
   const Status status = improvement.verdict.status;
   const double given = improvement.first.given_error.validate.combined, left = improvement.error.validate.combined;
   if (left < kLower * given && (status == Status::unexplained || status == Status::insufficient_data))
@@ -87,7 +87,7 @@ Verdict improvement_verdict(const Improvement& improvement, const ImprovementFil
     verdict.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
   verdict.sentences.push_back(
       fmt::format("Stopped because {}. {}", improvement.stopped_because, improvement.verdict.explanation));
-  if (!done) verdict.sentences.push_back("To go on: " + improvement.verdict.next_experiment);
+  if (!done) verdict.sentences.push_back("Next: " + improvement.verdict.next_experiment);
   if (improvement.is_refused) {
     verdict.sentences.push_back(fmt::format("{} holds the model as given.", files.output));
     return verdict;
@@ -124,7 +124,7 @@ void write_improvement_report(const Improvement& improvement, const ImprovementF
   for (const FoundEffect& effect : found) sizes.push_back(size_in_words(effect) + ".");
   if (!added.empty()) sizes.push_back(errors_in_words(channels_of(improvement)));
   verdict.sentences.insert(verdict.sentences.begin(), sizes.begin(), sizes.end());
-  // Inserted before the last sentence, which leads to the command.
+  // Inserted before the last sentence, which introduces the command.
   const std::vector<std::string> what_to_do = remedies(added);
   verdict.sentences.insert(verdict.sentences.end() - 1, what_to_do.begin(), what_to_do.end());
   report.verdict(std::move(verdict));

@@ -1,4 +1,4 @@
-// Result of an improvement: as a sentence, as errors step by step, as a page.
+// Result of an improvement: as a sentence, as errors step by step, and as a report.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct ImprovementFiles {
 /// "18.6 -> 0.78 x noise floor by adding cogging", the model's file, the remaining error, and the next command.
 Verdict improvement_verdict(const Improvement& improvement, const ImprovementFiles& files);
 
-/// Errors from the given model on: training and validation error of each step, with the noise floor as reference.
+/// Training and validation error of the given model and after each step, with the noise floor as reference.
 BarChart ladder_chart(const Improvement& improvement);
 
 /// The verdict, what was found, the errors step by step, and the residual before and after. Throws Failure(bad_input)

@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-/// Windows of a set that follow one another within `span_s`.
+/// Number of windows of a set in `span_s` of motion.
 std::size_t windows_in(double span_s, const RecordSet& set) {
   return std::max<std::size_t>(1,
                                static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));

@@ -13,7 +13,7 @@ namespace host {
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before, std::size_t tried);
 
-/// The reference for noise floors: the best model that a search found.
+/// The model whose noise floors are used: the best model that a search found.
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings);
 
 /// Fills errors, regions, candidates and verdict of `diagnosis`, whose sets and base must be set; `given` is the model

@@ -14,15 +14,15 @@ namespace host {
 
 namespace {
 
-/// Difference step of the Jacobian, relative to a parameter's scale: far above rounding, small compared with any
-/// curvature.
+/// Difference step of the Jacobian, relative to a parameter's scale: far above rounding errors, small enough that
+/// curvature does not matter.
 constexpr double kDifferenceStep = 1e-4;
 
 class WindowResiduals : public ceres::CostFunction {
  public:
   WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
       : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
-    // A prior weighs like one further measurement with this set's error.
+    // A prior has the weight of one further measurement with this set's error.
     const auto windows = static_cast<double>(std::max<std::size_t>(1, set.used_windows()));
     belief_weight_ = std::sqrt(std::max(1.0, set.common_square / kCommonSquare) / windows);
     for (std::size_t k = 0; k < vector.size(); ++k)
@@ -31,7 +31,7 @@ class WindowResiduals : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
   }
 
-  /// Parameters arrive in units of their scales. Returns false once the fit is cancelled.
+  /// Parameters are in units of their scales. Returns false once the fit is cancelled.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto columns = static_cast<Eigen::Index>(vector_.size());
     const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);
@@ -45,7 +45,7 @@ class WindowResiduals : public ceres::CostFunction {
     for (Eigen::Index column = 0; column < columns; ++column) {
       if (is_cancelled()) return false;
       const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
-      // Away from the upper bound, where a step upwards would be clamped away.
+      // A step down from the upper bound, because a step up would be clamped.
       const bool at_top = scaled(column) * free.scale + kDifferenceStep * free.scale > free.upper;
       const double step = at_top ? -kDifferenceStep : kDifferenceStep;
       Eigen::VectorXd moved = scaled;
@@ -121,10 +121,11 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.max_num_iterations = options.most_iterations;
   solver.function_tolerance = options.least_gain;
   solver.parameter_tolerance = 1e-6;
-  solver.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic takes all slopes anew at each trial
-  solver.max_num_line_search_step_size_iterations = 6;       // a step that is still bad at a hundredth is bad
+  solver.line_search_interpolation_type =
+      ceres::QUADRATIC;                                 // a cubic would compute all derivatives again at each trial
+  solver.max_num_line_search_step_size_iterations = 6;  // a step that fails at a hundredth of its length is rejected
   solver.logging_type = ceres::SILENT;
-  solver.num_threads = 1;  // candidates are fitted side by side
+  solver.num_threads = 1;  // candidates are fitted in parallel
   Budget budget(*residuals, options.most_steps);
   solver.callbacks.push_back(&budget);
   ceres::Solver::Summary summary;

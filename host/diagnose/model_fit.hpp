@@ -1,4 +1,4 @@
-// Joint fit of all parameters of a model to records, by prediction error over short windows.
+// Fit of all parameters of a model together to records, by the prediction error over short windows.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,10 +13,10 @@ namespace host {
 
 struct FitOptions {
   int most_iterations = 25;
-  double least_gain = 1e-4;  ///< relative decrease of the squared error below which a step is the last one
+  double least_gain = 1e-4;  ///< a step is the last if it lowers the squared error by less than this (relative)
   Freedom freedom = Freedom::everything;
-  /// Integrator steps after which a fit ends with its present values. Not a time limit, so that every computer gives
-  /// the same result.
+  /// Number of integrator steps after which a fit ends with its present values. It is not a time limit, so that every
+  /// computer gives the same result.
   double most_steps = HUGE_VAL;
 };
 
@@ -24,20 +24,20 @@ struct FitResult {
   sim::DriveDescription model;
   double robust = 0.0;  ///< SetError::robust of the training set at the solution
   int iterations = 0;
-  double steps = 0.0;      ///< of the integrator
+  double steps = 0.0;      ///< integrator steps used
   bool cut_short = false;  ///< ended because all steps were used
 };
 
 /// Levenberg-Marquardt (Ceres) within the catalogue's bounds, from the model's present values.
 FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options = {});
 
-/// Effect of a small change of each parameter on the residuals of a set.
+/// Change of the residuals of a set for a small change of each parameter.
 struct Linearisation {
   Eigen::VectorXd residuals;  ///< as residuals_of() gives them, followed by those of the priors
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;  ///< per scale of each parameter
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;  ///< per FreeParameter::scale
 };
 
-/// At the model's present values. Empty if the model diverges.
+/// Linearises at the model's present values. Empty if the model diverges.
 Linearisation linearise(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set);
 
 /// Estimate of one fitted parameter.
@@ -45,13 +45,13 @@ struct ParameterEstimate {
   std::string name;  ///< "cogging.cosine"
   double value;
   double deviation;             ///< standard error
-  bool determined;              ///< false if the interval is as wide as the value, or the correlation nearly complete
+  bool determined;              ///< false if the interval is as wide as the value or the correlation is nearly 1
   std::string correlated_with;  ///< the partner of the strongest correlation above 0.95; may be empty
   double correlation = 0.0;
 };
 
-/// Estimates with standard errors that allow for residuals being alike within a window (cluster-robust), written into
-/// the model as 95 % intervals.
+/// Estimates with standard errors that allow for correlated residuals within a window (cluster-robust). Writes them
+/// into the model as 95 % intervals.
 std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, const RecordSet& training);
 
 }  // namespace host

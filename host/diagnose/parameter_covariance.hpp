@@ -1,4 +1,4 @@
-// How well records determine the free parameters of a model together.
+// Covariance of the free parameters of a model fitted to records.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +10,11 @@ namespace host {
 
 struct ParameterCovariance {
   ParameterVector vector;
-  Eigen::VectorXd values;  ///< of the parameters, in their own units
-  Eigen::MatrixXd matrix;  ///< of the values; empty if the model diverges
+  Eigen::VectorXd values;  ///< values of the parameters, in their own units
+  Eigen::MatrixXd matrix;  ///< covariance of the values; empty if the model diverges
 };
 
-/// At the model's present values; cluster-robust, since residuals are correlated within a window.
+/// Covariance at the model's present values; cluster-robust, because residuals are correlated within a window.
 ParameterCovariance covariance_of(const sim::DriveDescription& model, const RecordSet& training);
 
 }  // namespace host

@@ -13,7 +13,7 @@ namespace host {
 
 namespace {
 
-/// Parameters of one direction that a model may claim to be equal.
+/// Parameters of one direction that may be set equal in a model.
 const std::vector<std::pair<std::string, std::string>> kMayBeEqual = {
     {"omega1_positive", "omega2_positive"}, {"omega1_negative", "omega2_negative"}, {"omega1", "omega2"}};
 
@@ -22,14 +22,14 @@ const std::string* partner_of(const std::string& id) {
   return found == kMayBeEqual.end() ? nullptr : &found->second;
 }
 
-/// A contact that breaks away within a micrometre is as good as rigid, and takes thousands of steps to simulate.
+/// A contact that breaks away within a micrometre behaves as rigid, but takes thousands of steps to simulate.
 constexpr double kShortestBreakaway_mm = 1e-3;
 
-/// A Stribeck curve that fades below a few tenths of a millimetre a second (lubricated guides: 0.5 to 10 mm/s) is a
-/// step, which a fit does not leave again: the error no longer depends on its speeds.
+/// Below a few tenths of a millimetre per second (lubricated guides: 0.5 to 10 mm/s) a Stribeck curve is a step. A fit
+/// cannot leave it again, because the error no longer depends on the speeds of the curve.
 constexpr double kSlowestFading_mm_s = 0.3;
 
-/// Stiffness of a contact that breaks away over the shortest travel, Nm/rad or N/m.
+/// Stiffness of a contact that breaks away over the shortest distance, Nm/rad or N/m.
 double stiffest_contact(const sim::DriveDescription& description) {
   const sim::EffectEntry* coulomb = description.find("coulomb");
   if (coulomb == nullptr) return HUGE_VAL;
@@ -39,7 +39,7 @@ double stiffest_contact(const sim::DriveDescription& description) {
   return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
 }
 
-/// The parameters of an entry in the catalogue's order; the orders of a period follow one another.
+/// The parameters of an entry in the catalogue's order; all orders of a period stay together.
 std::vector<std::string> ids_in_order(const sim::EffectInfo& info, const sim::EffectEntry& entry) {
   std::vector<std::string> ids;
   for (const sim::ParameterInfo& parameter : info.parameters)
@@ -48,7 +48,7 @@ std::vector<std::string> ids_in_order(const sim::EffectInfo& info, const sim::Ef
   return ids;
 }
 
-/// Lower bound of the speeds in a Stribeck curve, rad/s or m/s.
+/// Lower bound of the speeds of a Stribeck curve, rad/s or m/s.
 double slowest_fading(const sim::DriveDescription& description) {
   const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
   return kSlowestFading_mm_s * millimetre / description.data.lead;
@@ -78,12 +78,13 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
       FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
       if (parameter.scale == sim::Scale::bristle_stiffness)
         free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
-      if (parameter.scale == sim::Scale::converter_range) {  // the other half of the range must move the axis
+      if (parameter.scale ==
+          sim::Scale::converter_range) {  // at most half of the range, because the rest must move the axis
         const double most = std::max(magnitude, 0.5 * description.data.dac_limit_V);
         free.lower = std::max(free.lower, -most);
         free.upper = std::min(free.upper, most);
       }
-      if (id.starts_with("static")) {  // the drive can break the axis away, since it has moved
+      if (id.starts_with("static")) {  // at most the drive's limit, because the axis has moved
         const double most = std::max(magnitude, description.data.dac_limit_V * description.data.effort_per_volt());
         free.lower = std::max(free.lower, -most);
         free.upper = std::min(free.upper, most);
@@ -102,7 +103,7 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
         free.entries.emplace_back(sim::numbered_id("value", static_cast<double>(last)), 1.0);
         taken.push_back(free.entries.back().first);
       }
-      if (info.periodic && id != "period") {  // one amplitude, whatever the phase
+      if (info.periodic && id != "period") {  // the amplitude, which does not depend on the phase
         const double order = sim::number_of(id).value_or(1.0);
         free.scale = std::hypot(entry.at(sim::harmonic_id("cosine", order)), entry.at(sim::harmonic_id("sine", order)));
       }

@@ -1,4 +1,4 @@
-// The free parameters of a drive as one vector, for solvers.
+// The free parameters of a drive as one vector for solvers.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,13 @@
 
 namespace host {
 
-/// One free number. It may represent several entries of the model that are assumed equal: parameters that had the same
-/// magnitude in one direction (eq. 19 with W1 = W2) stay equal, so that a refit keeps the model's form.
+/// One free number. It may stand for several entries of the model: parameters of one direction that had the same
+/// magnitude (eq. 19 with W1 = W2) stay equal, so that a fit keeps the form of the model.
 struct FreeParameter {
   std::size_t effect;                                   ///< index into DriveDescription::effects
   std::vector<std::pair<std::string, double>> entries;  ///< parameter id and the sign it carries
   double scale;                                         ///< typical size, > 0
-  double lower, upper;                                  ///< bounds of the number
+  double lower, upper;                                  ///< bounds of the value
   std::optional<sim::Belief> believed = {};             ///< the model file's prior
 
   std::string name(const sim::DriveDescription& description) const;  ///< "cogging.cosine"
@@ -29,7 +29,7 @@ enum class Freedom {
 
 class ParameterVector {
  public:
-  /// Scales come from the values, or from the catalogue where a value is zero.
+  /// The scales are the magnitudes of the values; for a value of zero, the scale comes from the catalogue.
   explicit ParameterVector(const sim::DriveDescription& description, Freedom freedom = Freedom::everything);
 
   const std::vector<FreeParameter>& parameters() const { return parameters_; }

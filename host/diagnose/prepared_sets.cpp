@@ -9,15 +9,15 @@ namespace host {
 
 namespace {
 
-/// Two dozen blocks in all. Bounds of their length, s of motion: within two seconds the motion is of one kind, and 0.3
-/// s still contain three windows.
+/// The motion is divided into about two dozen blocks with these bounds of their length, s of motion. Within two seconds
+/// the motion hardly changes its kind, and 0.3 s still contain three windows.
 constexpr double kBlocks = 24.0;
 constexpr double kShortestBlock_s = 0.3, kLongestBlock_s = 2.0;
-/// One block of four is held back; one of three if there are few.
+/// One block in four is held back; one in three if there is little motion.
 constexpr std::size_t kUsualEvery = 4, kEveryOfFew = 3;
 constexpr double kFew_s = 30.0;
 
-/// Whether the axis moves at a row: faster than three standard deviations of its smoothed speed.
+/// Whether the axis moves at a row: its smoothed speed exceeds three standard deviations of that speed.
 std::vector<bool> moving_rows(const PreparedRecord& prepared) {
   constexpr double kDeviations = 3.0;
   const SmoothedMotion& motion = prepared.motion();
@@ -44,8 +44,8 @@ double moving_s_of(const RecordSet& set) {
   return sum;
 }
 
-/// The block of each window, one list per record. A block has this many seconds of motion, and the rest that follows
-/// them. Numbering continues from record to record; a block ends with its record.
+/// The block number of each window, one list per record. A block has this many seconds of motion and includes the
+/// standstill that follows. The numbers continue from record to record; a block ends with its record.
 std::vector<std::vector<std::size_t>> blocks_of(const RecordSet& set, double block_s) {
   std::vector<std::vector<std::size_t>> blocks;
   std::size_t block = 0;
@@ -103,7 +103,7 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
     const std::size_t reach = trains.smoother.reach();
     trains.windows.clear();
     judges.windows.clear();
-    std::vector<bool> near(trains.record->size(), false);  // rows on which a validation window depends
+    std::vector<bool> near(trains.record->size(), false);  // rows that affect a validation window
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (blocks[r][k] % kept.every != kept.every - 1) continue;
       judges.windows.push_back(all[k]);

@@ -11,8 +11,8 @@ namespace host {
 
 namespace {
 
-/// Log of the error, both sets weighted equally, plus the penalty for a candidate's complexity. Errors below the noise
-/// floor reflect the uncertainty of the floor.
+/// Log of the error, with both sets weighted equally, plus the penalty for a candidate's complexity. Errors are bounded
+/// below, because an error below the noise floor shows only that the noise floor is uncertain.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
   const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
   return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
@@ -21,13 +21,13 @@ double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) 
          scale.bound * static_cast<double>(candidate.on_bound.size());
 }
 
-/// Whether the verdict has a name for what is missing.
+/// Whether the verdict names the missing effect.
 bool is_claimed(const Diagnosis& diagnosis) {
   const Status status = diagnosis.verdict.status;
   return status == Status::missing || status == Status::ambiguous;
 }
 
-/// Probability that a base with these errors, and with the verdict's objections to it, lacks nothing.
+/// Probability that a base with these errors lacks nothing, given the verdict's objections to it.
 double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   const double windows = static_cast<double>(
       std::max<std::size_t>(1, std::min(diagnosis.training.used_windows(), diagnosis.validation.used_windows())));
@@ -41,7 +41,8 @@ double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& 
                   objected);
 }
 
-/// Probability that something else causes the error that the best candidate explains, from the share that it leaves.
+/// Probability that the error which the best candidate explains has another cause, from the share of the error that the
+/// candidate leaves.
 double probability_of_other(double unexplained, const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   constexpr double kLeastPart = 0.01;
   const bool claimed = is_claimed(diagnosis);
@@ -58,7 +59,7 @@ double probability_of_other(double unexplained, const Diagnosis& diagnosis, cons
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const double nothing = probability_complete(diagnosis, scale);
-  // A gain that may be chance is no evidence for a candidate, nor against the others.
+  // A gain that may be chance is no evidence for a candidate or against the others.
   std::vector<double> costs, weights;
   for (const JudgedCandidate& candidate : diagnosis.candidates) costs.push_back(cost_of(candidate, scale));
   const double least = costs.empty() ? 0.0 : *std::ranges::min_element(costs);

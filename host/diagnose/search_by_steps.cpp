@@ -18,7 +18,7 @@ namespace host {
 
 namespace {
 
-/// An effect that helps only at a bound of its physical range substitutes for another; no further effect is built on
+/// An effect that helps only at a bound of its physical range stands in for another one. No further effect is added to
 /// it.
 bool is_physical(const Candidate& candidate) { return parameters_on_bound(candidate.model, candidate.kinds).empty(); }
 
@@ -30,7 +30,8 @@ struct Errors {
         validation(error_of(sim::Drive(model), sets.validation).combined) {}
 };
 
-/// A pair that explains two fifths of the error, and leaves more than a complete model, is incomplete.
+/// A third effect is searched for if the pair explains two fifths of the error and leaves more than a complete model
+/// would.
 bool promises_a_third(const Errors& base, const Errors& pair) {
   constexpr double kMost = 0.4;
   return pair.validation > kExplained && explained_share(base.training, pair.training) > kMost &&
@@ -46,9 +47,9 @@ sim::DriveDescription without(const sim::DriveDescription& model, const std::str
   return fit_model(rest, training, kWithoutOne).model;
 }
 
-/// While the axis slides, a constant force or an offset of the command equals friction by direction. Friction takes it
-/// over in one step, where a fit by gradients would stay in a nearby local minimum. Empty for other effects and other
-/// friction.
+/// While the axis slides, a constant force or an offset of the command is equivalent to a difference of friction
+/// between the directions. This changes the friction accordingly in one step; a fit by gradients would stay in a nearby
+/// local minimum. Empty for other effects and other forms of friction.
 std::optional<sim::DriveDescription> handed_to_friction(const sim::DriveDescription& model, const std::string& kind) {
   double force = 0.0;
   if (kind == "constant_torque") force = model.find(kind)->at("torque");
@@ -82,8 +83,8 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
   return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
 }
 
-/// Whether the base was stuck in a local minimum: refitted from the fit of one of the best effects, it reaches the same
-/// training error without the effect. If so, the base keeps that fit.
+/// Whether the base was stuck in a local minimum: with a start from the fit of one of the best effects, the base
+/// reaches the same training error without that effect. If so, the base keeps that fit.
 bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
   constexpr double kBetter = 0.98;
   constexpr std::size_t kTried = 3;
@@ -98,8 +99,8 @@ bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
   return false;
 }
 
-/// Refits several effects without each of them in turn: the last may have made an earlier one unnecessary, or may only
-/// have moved the fit out of a local minimum.
+/// Refits several effects without each of them in turn. The last one may have made an earlier one unnecessary, or may
+/// only have moved the fit out of a local minimum.
 std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
   std::vector<Candidate> found;
   const Errors with(whole.model, sets);
@@ -113,8 +114,8 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
   return found;
 }
 
-/// The pair with its first effect replaced by one it is confused with, if that explains something alone, because the
-/// second was searched only beside the first.
+/// The pair with its first effect replaced by an effect with which it is often confused, if that also helps alone. The
+/// second effect was searched only beside the first.
 std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::vector<Candidate>& singles,
                                             const PreparedSets& sets) {
   std::vector<Candidate> found;
@@ -133,8 +134,8 @@ std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::ve
   return found;
 }
 
-/// Splits the friction of a drive with a second mass between both sides where that is better: a spring that bends by
-/// another friction than the load's looks like a gap.
+/// Divides the friction of a drive with a second mass between motor and load if that is better: friction on the motor
+/// side can make a spring look like a gap.
 void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets) {
   constexpr double kStart = 0.9, kBetter = 0.98;
   for (Candidate& candidate : candidates) {
@@ -150,9 +151,10 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
 }
 
-/// A spring is a gap of width zero, so every gap is compared with the spring behind it, fitted as finely. The spring
-/// takes its place if the encoder does not show the gap, or if it predicts the held-back records at least as well;
-/// unless a spring is no candidate. Of two candidates with the same effects, the better remains.
+/// A spring is a gap of width zero, so every gap is compared with a spring that is fitted equally well. The spring
+/// replaces the gap if the encoder does not show the gap, or if the spring predicts the held-back records at least as
+/// well. If `absent` contains the spring, nothing is replaced. Of two candidates with the same effects, the better one
+/// remains.
 void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets& sets) {
   if (std::ranges::find(sets.absent, "compliance") != sets.absent.end()) return;
   std::vector<Candidate> springs;
@@ -163,7 +165,8 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
     const bool is_unseen = gap->at("gap") < least_gap(model.data);
     gap->kind = "compliance";
     gap->parameters.erase("gap");
-    // A gap that closes hard is a contact with much damping, which no spring of a drive has.
+    // The damping of a hard contact is higher than that of any spring in a drive, so the spring starts with its usual
+    // damping.
     gap->parameters["damping_ratio"] = sim::find_effect("compliance")->parameter("damping_ratio")->starts.front();
     std::vector<std::string> kinds = candidate.kinds;
     std::ranges::replace(kinds, "backlash", "compliance");
@@ -212,7 +215,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto single = std::ranges::find_if(found.singles, is_physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = search(single->model, single->kinds, 0.5, 0.8);
-  // Uses the whole error, because single impacts and breakaways, which the ranking of candidates weights less,
+  // Uses the whole error. The ranking of candidates gives less weight to single impacts and breakaways, but these
   // determine the remaining error.
   const auto cost = [&](const Candidate& candidate) {
     const Errors errors(candidate.model, sets);

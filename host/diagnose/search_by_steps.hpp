@@ -1,5 +1,5 @@
-// Searches for one effect, then for a second one to add to the best, then for a third to add to the best pair, as long
-// as the residual needs it.
+// Searches for one effect, then for a second one to add to the best, then for a third one to add to the best pair,
+// while the residual requires it.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,13 @@ namespace host {
 struct Findings {
   std::vector<Candidate> singles;  ///< one effect added to the base
   std::vector<Candidate> pairs;    ///< a second one added to the best single
-  /// A third effect added to the best pair, if the pair explains much but leaves much; and the pair that remains if the
+  /// A third effect added to the best pair, if the pair explains much but not enough. Also the remaining pair if the
   /// third effect makes one of the first two unnecessary.
   std::vector<Candidate> triples;
 };
 
-/// Searches in `sets`, whose floors become those of the best model at each step; kinds in sets.absent are not tried.
+/// Searches in `sets`, whose noise floors become those of the best model at each step. Kinds in sets.absent are not
+/// tried.
 Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEffort effort);
 
 }  // namespace host

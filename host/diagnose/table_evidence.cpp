@@ -25,13 +25,13 @@ bool is_denied(const TableStudy& study, std::string_view kind) {
   return probability && *probability <= 1.0 - kClaimed && !in_a_group(study, kind);
 }
 
-/// Whether the table shows that a connection is not there, or that it is too small to be named.
+/// Whether the table shows that a connection is absent or too small to be named.
 bool is_too_small(const TableStudy& study, std::string_view kind) {
   const TableEffect* effect = study.find(kind);
   return is_denied(study, kind) || (effect != nullptr && !effect->worth_naming);
 }
 
-/// The connection that the motion names if the table names the other one: then neither is certain.
+/// The connection that the motion names, if the table names the other one. Then neither is certain.
 std::optional<std::string> other_connection(const TableStudy& study, const DiagnosisVerdict& verdict) {
   if (verdict.status != Status::missing) return {};
   for (const std::string_view kind : kConnections)
@@ -41,7 +41,8 @@ std::optional<std::string> other_connection(const TableStudy& study, const Diagn
   return {};
 }
 
-/// Removes effects that the table excludes from names and groups; a group with one remaining effect becomes a name.
+/// Removes effects that the table excludes from the named ones and the groups. If one effect of a group remains, it is
+/// named.
 void take_back(const TableStudy& study, DiagnosisVerdict& verdict) {
   const auto contradicted = [&](const std::string& kind) { return is_connection(kind) && is_denied(study, kind); };
   const bool group_was_named = verdict.status == Status::ambiguous;
@@ -108,9 +109,9 @@ std::string advice_on_a_scale(const DiagnosisVerdict& verdict) {
                                [&](const std::vector<std::string>& group) { return contains(group, kind); });
   };
   if (std::ranges::none_of(kConnections, speaks_of)) return {};
-  return " A scale on the table (column x2_mm) decides: behind backlash the table stays where it is for the gap at any "
-         "force, on a spring it lags in proportion to the force, and where it follows the motor it is neither. A dial "
-         "gauge at reversals (axistool dial) tells whether it is one of them.";
+  return " A scale on the table (column x2_mm) decides: with backlash the table stands still until the motor has "
+         "crossed the gap, at any force; with a spring it lags in proportion to the force; if it follows the motor, "
+         "it is neither. A dial gauge at reversals (axistool dial) shows whether it is one of them.";
 }
 
 }  // namespace host

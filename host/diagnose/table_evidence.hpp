@@ -1,5 +1,5 @@
-// Decisions that a sensor on the table makes in a diagnosis: it measures backlash, wind-up and pitch errors, which
-// otherwise are inferred.
+// Decisions by a sensor on the table in a diagnosis. The sensor measures backlash, wind-up and pitch errors, which are
+// otherwise inferred from the motion.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace host {
 
-/// Kinds of connections between motor and table that the table's sensor excludes. Both or none, because both leave the
-/// same trace in the motion; settle_by_table() tells them apart.
+/// Kinds of connections between motor and table that the table's sensor excludes: both or none, because both have the
+/// same effect on the motion. settle_by_table() tells them apart.
 std::vector<std::string> absent_by_table(const TableStudy& study);
 
 /// Names the effects that the table shows in addition to those of the motion, and withdraws those that it contradicts.
-/// Needs the found effects of the motion.
+/// Needs the effects found in the motion.
 void settle_by_table(const TableStudy& study, Diagnosis& diagnosis);
 
 /// If backlash or compliance is named and only the motor's encoder was recorded: what a scale or a dial gauge would
-/// decide; empty otherwise.
+/// decide. Empty otherwise.
 std::string advice_on_a_scale(const DiagnosisVerdict& verdict);
 
 }  // namespace host

@@ -18,18 +18,19 @@ namespace host {
 
 namespace {
 
-/// A further effect must explain half of the remaining error (on a machine limited by model error it is enough that the
-/// two need each other), and a sixth of the total.
+/// A further effect must explain half of the explainable error that remains, and lower the error by 15 %. On a machine
+/// limited by model error, the first is not required if the two effects need each other.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
-/// Candidates with errors closer than this on both sets are not distinguished.
+/// Candidates whose errors differ by less than this on both sets are not told apart.
 constexpr double kTie = 0.05;
 /// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
 
 double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
 
-/// An effect that helps only at a bound of its range is not claimed unless there is no other.
+/// The best candidate with `size` effects. One that helps only at a bound of its range is returned only if there is no
+/// other.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
   const JudgedCandidate* best = nullptr;
   const auto is_better = [&](const JudgedCandidate& candidate) {
@@ -51,7 +52,7 @@ bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
   double alone_train = 0.0, alone_validate = 0.0;
   for (const std::string& kind : pair.kinds) {
     const auto single = std::ranges::find(diagnosis.candidates, std::vector{kind}, &JudgedCandidate::kinds);
-    if (single == diagnosis.candidates.end()) continue;  // gained too little to be tried further
+    if (single == diagnosis.candidates.end()) continue;  // gained too little and was not fitted further
     alone_train += std::max(0.0, explained_share(diagnosis.before_train, single->train_after));
     alone_validate += std::max(0.0, explained_share(diagnosis.before_validate, single->after));
   }
@@ -59,7 +60,7 @@ bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
          explained_share(diagnosis.before_validate, pair.after) > alone_validate;
 }
 
-/// The effect that a candidate has instead of `kind`, all others equal; empty if it differs otherwise.
+/// The effect that a candidate has instead of `kind`, if all others are equal; empty otherwise.
 std::string exchanged_for(const std::string& kind, const JudgedCandidate& best, const JudgedCandidate& candidate) {
   if (candidate.kinds.size() != best.kinds.size()) return {};
   std::string other;
@@ -72,7 +73,7 @@ std::string exchanged_for(const std::string& kind, const JudgedCandidate& best, 
   return other;
 }
 
-/// Effects that in place of `kind` explain as well as the best candidate does and are no more complicated.
+/// Effects that can replace `kind`: they explain as much as the best candidate and are no more complicated.
 std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate& best, const Diagnosis& diagnosis) {
   std::vector<std::string> tied;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
@@ -85,8 +86,8 @@ std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate&
   return tied;
 }
 
-/// Without constant speeds, friction that falls with a power of the speed may be Stribeck friction, and a fit of one
-/// form does not lead to the other. An exponent that steepens with speed is fluid drag.
+/// Without constant speeds, nonlinear viscous friction may be Stribeck friction, and a fit of one form does not lead to
+/// the other. An exponent above kSteepens is fluid drag.
 bool may_be_stribeck(const JudgedCandidate& chosen, const Diagnosis& diagnosis) {
   constexpr double kSteepens = 1.5;
   const sim::EffectEntry* bend = chosen.model.find("nonlinear_viscous");
@@ -95,7 +96,7 @@ bool may_be_stribeck(const JudgedCandidate& chosen, const Diagnosis& diagnosis) 
          std::ranges::find(diagnosis.absent, "stribeck") == diagnosis.absent.end();
 }
 
-/// The simplest of the singles that are as good as the best one.
+/// The simplest of the single effects that are as good as the best one.
 const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosis& diagnosis) {
   constexpr double kNear = 0.02;
   const JudgedCandidate* simplest = best;
@@ -116,8 +117,8 @@ std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind ki
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// A ripple along the travel that lowers the training error alone: with an incremental encoder each homing gives the
-/// travel a new zero, and the ripple a new phase. Empty where there is none.
+/// A ripple along the travel that alone lowers the training error but not the validation error. With an incremental
+/// encoder each homing gives the travel a new zero and the ripple a new phase. Empty if there is no such ripple.
 std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::DriveKind kind) {
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
     const sim::EffectEntry& last = candidate.model.effects.back();
@@ -151,7 +152,7 @@ double validation_s(const Diagnosis& diagnosis) {
   return static_cast<double>(diagnosis.validation.used_windows()) * diagnosis.window_s;
 }
 
-/// Why the closest candidate is not claimed, to follow a statement of the error.
+/// Why the best candidate is not claimed, as the end of a sentence about the error.
 std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
   const std::string what =
       fmt::format("; the best candidate, {}, leaves {:.2f} (training: {:.2f})", fmt::join(closest.kinds, " + "),

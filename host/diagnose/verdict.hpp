@@ -1,4 +1,4 @@
-// Makes a verdict from candidates: the missing effect, the effects that the data cannot separate, and the next
+// Makes the verdict from the candidates: the missing effect, the effects that the data cannot tell apart, and the next
 // measurement.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// Combined error up to which nothing remains to be explained: a perfect model gives about 1.
+/// Combined error above which something remains to be explained; a perfect model gives about 1.
 inline constexpr double kExplained = 1.25;
 
 /// Whether a refit changed a parameter of an effect by more than 5 %.

@@ -17,25 +17,26 @@ namespace host {
 namespace {
 
 constexpr std::size_t kWindows = 100;
-/// If an effect has many starts, this many are tried, evenly spread.
+/// At most this many starts of an effect are tried, evenly spread.
 constexpr std::size_t kMostSizes = 4;
-/// Difference step of the slopes, relative to a parameter's scale.
+/// Difference step of the derivatives, relative to a parameter's scale.
 constexpr double kStep = 1e-3;
-/// Period of a ripple on a linear drive, whose model has no screw: that of a usual screw's pitch.
+/// Period of a ripple on a linear drive, whose model has no screw: the pitch of a usual screw.
 constexpr double kUsualPitch_m = 0.01;
 /// Usual amplitudes of ripples: cogging and friction along the travel relative to the Coulomb level, ripple of the
-/// torque constant and of the tachometer relative to what they ripple on, an encoder's error in steps of a micrometre.
+/// torque constant and of the tachometer relative to their mean, an encoder's error in micrometres.
 constexpr double kUsualCogging = 0.05, kUsualFrictionWave = 0.15, kUsualRipple = 0.03, kUsualEncoderError_um = 5.0;
 
 RecordSet few_windows(const RecordSet& set) {
   RecordSet few = set;
   few.stride = 1;
   few.stride = std::max<std::size_t>(1, few.used_windows() / kWindows);
-  few.common_square = 1e12;  // differences of predictions, none of them uncommon
+  few.common_square = 1e12;  // differences of predictions, which have no outliers
   return few;
 }
 
-/// Errors over floor of all samples of both sets, scaled so that their squares sum to the mean square.
+/// Errors over noise floor of all samples of both sets, scaled so that the sum of their squares is the mean square
+/// error.
 Eigen::VectorXd errors_of(const sim::DriveDescription& model, const std::array<RecordSet, 2>& sets) {
   const auto first = static_cast<Eigen::Index>(residual_count(sets[0]));
   const auto second = static_cast<Eigen::Index>(residual_count(sets[1]));

@@ -1,5 +1,5 @@
 // Which effects the records can show: whether an effect of usual size leaves a residual that a refit of the base cannot
-// absorb. If not, the absence of a finding says nothing about it.
+// absorb. If not, the effect may be present although it was not found.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace host {
 
-/// The trace of one effect of usual size.
+/// The residual that one effect of usual size leaves.
 struct Visibility {
   std::string kind;
   double floors = 0.0;  ///< RMS over floor that the effect adds to a complete base, after a re-fit of the base
 };
 
-/// An effect of this many noise floors raises a complete model's error from 1 to 1.25.
+/// An effect that adds this to the error over noise floor raises the error of a complete model from 1 to 1.25.
 inline constexpr double kVisible = 0.75;
 
-/// Every effect of the catalogue that can be added to `base`, at the sizes that fits start from (for ripples: a usual
-/// amplitude once a turn), by its most visible size. To first order in the base's parameters. On some 100 windows of
+/// Every effect of the catalogue that can be added to `base`, with the most visible of the sizes from which fits start
+/// (for ripples: a usual amplitude once per turn). Linearised in the parameters of the base. Uses some 100 windows of
 /// each set.
 std::vector<Visibility> visibility_of_effects(const sim::DriveDescription& base, const RecordSet& training,
                                               const RecordSet& validation);

@@ -8,7 +8,7 @@ namespace host {
 
 EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                         const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
-  constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // from a quarter of the distance between forms down to 0.1 %
+  constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // from a quarter of the distance between forms to 0.1 %
   constexpr double kLeastStep = 1e-4;                     // of the error: smaller gains are noise
   std::vector<const EffortTerm*> further = pointers_to(chosen);
   further.push_back(nullptr);

@@ -1,4 +1,4 @@
-// Refines the shape of an effect between the forms that were tried first.
+// Refines the shape of an effect, starting from the forms that were tried first.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// The form with the smallest training residual among the neighbours of `term`, which must exist, and their neighbours;
-/// `model` is the resulting drive.
+/// The form with the smallest training residual, found by repeated steps to the best neighbour of `term`, which must
+/// have neighbours. `model` becomes the fitted drive.
 EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                         const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model);
 

@@ -24,41 +24,43 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Usual size of an effect: this part of the Coulomb level, RMS over the rows, times one of these. A prior with heavy
-/// tails, since the weight of an arm is fifty times usual cogging.
+/// Usual RMS of an effect over the rows: this part of the Coulomb level, times one of kTails. The prior has heavy
+/// tails, since the weight of an arm can be fifty times usual cogging.
 constexpr double kUsual = 0.3;
 constexpr double kTails[] = {0.3, 1.0, 5.0, 25.0};
 constexpr Index kTailCount = 4;
-/// Prior deviation of a base parameter: some three times its least-squares value.
+/// Prior standard deviation of a base parameter: about three times its least-squares value.
 constexpr double kBaseKnownTo = 3.0;
-/// Kinds whose approximate evidence is this many nats behind the best are not fitted: e^-30 does not change the odds.
+/// Kinds whose approximate log evidence is this many nats below the best are not fitted, because e^-30 does not change
+/// the odds.
 constexpr double kOutOfReach = 30.0;
 constexpr std::size_t kFormsFitted = 6;  // of each ranking
 constexpr std::size_t kMostFitted = 8, kMostWavesWeighed = 24;
-constexpr std::size_t kStarts = 4;  // from which the form of one kind is refined
+constexpr std::size_t kStarts = 4;  // starts from which the form of one kind is refined
 
 double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
 
-/// More rows add nothing about a dozen parameters and cost time with the square of the memory's columns.
+/// About a dozen parameters need no more rows, and the time grows with their number times the square of the memory's
+/// columns.
 constexpr std::size_t kMostRows = 2500;
 
 /// A form of an effect before it is fitted.
 struct Form {
   std::string kind;
-  MatrixXd columns;  ///< of RMS 1
-  double log_unit;   ///< change of the log evidence when the residual is expressed in another unit
+  MatrixXd columns;  ///< each with RMS 1
+  double log_unit;   ///< change of the log evidence by the unit of the residual (EffortTerm::acting)
   std::function<EffortTerm()> term;
   std::vector<int> sign;
-  double log_prior = 0.0;  ///< among all forms of its kind
+  double log_prior = 0.0;  ///< log of its prior probability among all forms of its kind
 };
 
 struct Weighed {
   const Form* form;
   double scale;
-  double log_gain;  ///< approximate, with the prior of the form
+  double log_gain;  ///< approximate gain of log evidence, including log_prior
 };
 
-/// The columns of a term at RMS 1; empty if one of them vanishes.
+/// The columns of a term, scaled to RMS 1; empty if one of them is zero.
 std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign, double acting,
                             std::function<EffortTerm()> term) {
   const double log_unit = static_cast<double>(columns.rows()) * std::log(acting);
@@ -77,14 +79,14 @@ double log_unit(const std::vector<EffortTerm>& terms, const Evidence& evidence) 
   return static_cast<double>(evidence.rows().size()) * sum;
 }
 
-/// A few waves over the travel, or a few per turn.
+/// Whether the wave has at most a dozen periods over the travel, or at most four per turn.
 bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   constexpr double kMostWaves = 12.0, kMostOrders = 4.0;
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
   return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
 }
 
-/// Of many waves, those with the largest plain gain.
+/// The waves with the largest gain in plain least squares.
 std::vector<std::size_t> most_promising(const std::vector<Wave>& waves, const WaveColumns& columns_of,
                                         const VectorXd& left) {
   std::vector<std::pair<double, std::size_t>> ranked;
@@ -118,7 +120,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
   const double size = rms(thin_.rows.effort);
   MatrixXd all(rows_count, 0);
   for (const EffortTerm& term : base) {
-    if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // inertia at steady speeds
+    if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // the inertia is zero at steady speeds
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
     all.rightCols(term.columns.cols()) = thin_.of(term.columns);
     deviations.resize(static_cast<std::size_t>(all.cols()), term.deviation);
@@ -140,7 +142,7 @@ void EffortHypotheses::Known::add(const VectorXd& column, double deviation) {
 
 EffortHypotheses::Known EffortHypotheses::known_with(const std::vector<EffortTerm>& chosen) const {
   Known known = base_;
-  // Effects that were found keep the widest prior.
+  // Effects that were found have the widest prior.
   for (const EffortTerm& term : chosen) {
     const MatrixXd columns = thin_.of(term.columns);
     for (Index c = 0; c < columns.cols(); ++c)
@@ -158,7 +160,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   const Known known = known_with(chosen);
   NextEffects found;
   found.fit = evidence_.fit(known.columns, known.deviations);
-  constexpr int kAgain = 3;  // the fixed point of the sizes may be slow
+  constexpr int kAgain = 3;  // the iteration of the sizes may converge slowly
   for (int again = 0; again < kAgain; ++again) {
     EvidenceFit further = evidence_.fit_from(found.fit, known.columns, known.deviations);
     const double gained = further.log_evidence - found.fit.log_evidence;
@@ -169,7 +171,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   const EvidenceFit bare = evidence_.fit(known.columns, known.deviations,
                                          {.colour = now.colour, .sizes = evidence_.no_memory(), .hold_sizes = true});
 
-  // All forms, kind by kind.
+  // All forms, grouped by kind.
   std::map<std::string, std::vector<Form>> forms;
   std::map<std::string, std::size_t> counts;
   const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
@@ -234,8 +236,9 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
                 [&rows = rows_, weight](const Wave& other) { return wave_columns(rows, weight, other); }, wave);
           });
     }
-    // Where the speed hardly changes, an error of the encoder and a torque along the travel are one wave. Discs err
-    // once a turn and more often, gratings many times over the travel; a few waves over it are no cyclic error.
+    // If the speed hardly changes, an encoder error and a torque along the travel have the same wave. An encoder error
+    // of a disc has once per turn as its lowest order; a grating has many periods over the travel. So waves with a few
+    // periods over the travel are not tried as encoder errors.
     const std::string misread = "encoder_cyclic_error";
     if (!rows_.steady && !rows_.by_speed && !is_excluded(misread)) {
       std::vector<Wave> waves = waves_over(model_.data, rows_, 1.0);
@@ -249,7 +252,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     }
   }
 
-  // Approximate evidence of every form at several sizes, with the present memory and without any.
+  // Approximate evidence of every form at several sizes, with the present memory and without a memory.
   VectorXd scales(kTailCount);
   for (Index s = 0; s < kTailCount; ++s) scales(s) = kTails[s] * kUsual * coulomb_;
   struct Fitted {
@@ -258,7 +261,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   };
   struct Kind {
     std::string name;
-    std::vector<Weighed> ranked[2];  ///< by their gain with the present memory, and without one
+    std::vector<Weighed> ranked[2];  ///< by gain with the present memory, and without a memory
     double best = -HUGE_VAL;
     std::vector<Fitted> fitted;
   };
@@ -282,12 +285,12 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::size_t in_reach = kinds.size();
   while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
-  // The best forms of each kind by either ranking: first the leaders, then the others, which end early if the best of
-  // their kind is out of reach. The margin covers changes in further rounds.
+  // Fits the best forms of each kind in either ranking. The leaders come first. The fits of the others end early if the
+  // best of their kind is out of reach; the margin covers changes in later rounds.
   struct Trial {
     std::size_t kind;
     const Weighed* weighed;
-    double spread = 0.0;  ///< of the other forms behind the best of a ranking, nats
+    double spread = 0.0;  ///< distance from the best form of its ranking, nats
   };
   std::vector<Trial> leaders, others;
   for (std::size_t k = 0; k < in_reach; ++k) {
@@ -343,7 +346,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     return reached;
   };
   fit_trials(others, fit_trials(leaders, std::vector<double>(in_reach, -HUGE_VAL)));
-  // Kinds out of reach are listed with their approximate gain.
+  // Kinds that are out of reach are listed with their approximate gain.
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
       if (ranked.empty()) continue;
@@ -367,7 +370,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
         effect.others.push_back(std::move(fitted[other].term));
     found.effects.push_back(std::move(effect));
   }
-  // Between effects that are one and the same to these rows, rounding is not to choose.
+  // Rounding errors must not decide between effects that are identical in these rows.
   std::ranges::sort(found.effects, {}, [](const NextEffect& effect) {
     constexpr double kSame = 1e-3;  // nats
     return std::pair(-std::round(effect.log_odds / kSame), effect.term.kind);

@@ -1,4 +1,4 @@
-// Selects the next effect by evidence: every form of every effect as columns of the force balance.
+// Selects the next effect by Bayesian evidence: every form of every effect is a set of columns of the force balance.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,14 @@
 
 namespace host {
 
-/// Training error of a form beside the effects chosen before; empty if it is not possible within physical bounds.
+/// Training error of a form beside the effects chosen before; empty if the fit exceeds physical bounds.
 using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
 
-/// The force balance of one drive, with the terms of every hypothesis: base and effects chosen so far.
+/// The force balance of one drive, with terms for the base and for the effects chosen so far.
 class EffortHypotheses {
  public:
-  /// `absent`: kinds that next() excludes. `coulomb`: the drive's friction level, Nm or N, the scale of all usual
-  /// sizes. Keeps references to model and rows.
+  /// `absent`: kinds that next() excludes. `coulomb`: the drive's friction level, Nm or N; all usual sizes are relative
+  /// to it. Keeps references to model and rows.
   EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows, const std::vector<EffortTerm>& base,
                    const Eigen::VectorXd& explained, double coulomb, const std::vector<std::string>& absent);
 
@@ -28,10 +28,11 @@ class EffortHypotheses {
   NextEffects next(const std::vector<EffortTerm>& chosen, const Eigen::VectorXd& explained,
                    const std::vector<std::string>& excluded, const PlainFit& plain_fit) const;
 
-  /// ln p of the rows with these terms and the base.
+  /// ln of the evidence (marginal likelihood) of the rows for the base and these terms.
   double log_evidence(const std::vector<EffortTerm>& chosen) const;
 
-  /// ln of the odds that a memory is needed in addition to the chosen terms: the residual depends on a coordinate.
+  /// ln of the odds that a memory is needed beside the chosen terms, which means that the residual depends on a
+  /// coordinate.
   double memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const;
 
   /// Weight of each row in a fit, 0 (outlier) to 1.

@@ -1,4 +1,5 @@
-// Smooth functions of each coordinate, for the part of the residual that no effect explains.
+// The memory: smooth functions of each coordinate. They model the part of the residual that no effect explains (model
+// discrepancy).
 #pragma once
 
 #include <vector>
@@ -8,11 +9,11 @@
 
 namespace host {
 
-/// Consecutive rows of a record.
+/// Splits the rows into runs of consecutive rows of one record.
 std::vector<RowRun> runs_of(const EffortRows& rows);
 
-/// Hats over speed by direction, position, friction over position, travel since the last reversal, friction over time,
-/// load (`explained`, Nm or N) and a level for each record. `usual`: the drive's Coulomb level, Nm or N.
+/// Hat functions over speed by direction, position, friction over position, travel since the last reversal, friction
+/// over time and load (`explained`, Nm or N), and a level for each record. `usual`: the drive's Coulomb level, Nm or N.
 Memory effort_memory(const EffortRows& rows, const Eigen::VectorXd& explained, double usual);
 
 }  // namespace host

@@ -46,7 +46,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
     at += terms[t]->columns.cols();
     for (const int s : terms[t]->sign) {
       beliefs.push_back(t < base.size() ? belief_of(t, base) : Prior{});
-      // It is unknown which of the two masses the data sheet means.
+      // The data sheet does not say which of the two masses its inertia is.
       if (second_mass && t == 0) beliefs.back().deviation = 0.0;
       sign.push_back(s);
     }
@@ -70,12 +70,12 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
       }
     }
     if (worst < 0) break;
-    // The data give a negative factor, so only a small positive one remains.
+    // The data give a negative factor, so a small positive one is used.
     constexpr double kHardlyAny = 0.01;
     fixed[static_cast<std::size_t>(worst)] = true;
     beliefs[static_cast<std::size_t>(worst)].value *= kHardlyAny;
     if (held != nullptr && static_cast<std::size_t>(worst) < base.size())
-      held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
+      held->push_back(fmt::format("{} would be negative", base[static_cast<std::size_t>(worst)].kind));
   }
   if (!theta.allFinite()) return false;
   out.residual = effort_ - phi * theta;
@@ -93,12 +93,12 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
 }
 
 double EffortRegression::confidence(const ScreenedModel& before, const ScreenedModel& after) const {
-  constexpr double kLinear = 1e12;  // squares as they are
+  constexpr double kLinear = 1e12;  // large, so that no square is reduced
   return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1, kLinear);
 }
 
 EffortRegression::Prior EffortRegression::belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
-  /// A data sheet value without a deviation has a prior deviation of half the value.
+  /// A data sheet value without a standard deviation gets half of its value as standard deviation.
   constexpr double kBelief = 0.5;
   if (base[index].deviation > 0.0) return {0.0, base[index].deviation, false};
   const std::string& kind = base[index].kind;
@@ -126,7 +126,7 @@ VectorXd EffortRegression::solve(const MatrixXd& moments, const VectorXd& projec
   for (Index c = 0; c < b.size(); ++c) {
     const Prior& belief = beliefs[static_cast<std::size_t>(c)];
     if (fixed[static_cast<std::size_t>(c)]) continue;
-    // Proportional columns share one factor.
+    // Columns that are proportional to one another share one factor.
     constexpr double kTiny = 1e-9;
     a(c, c) *= 1.0 + kTiny;
     if (belief.deviation > 0.0) {

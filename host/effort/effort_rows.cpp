@@ -19,19 +19,19 @@ namespace host {
 
 namespace {
 
-/// Below this part of a record's high speeds (95 %) an axis may stick: the force balance does not hold there.
+/// At speeds below this part of a record's 95 % quantile the axis may stick, and the force balance does not hold.
 constexpr double kSlidingShare = 0.01;
-/// A speed that changes by less than this part of its median within a record is steady: friction hardly changes over
-/// it.
+/// The speed is steady if it changes within a record by less than this part of its median. Friction then hardly
+/// changes.
 constexpr double kSteadyShare = 0.5;
-/// The same for an acceleration that needs less than this part of the torque or force.
+/// The acceleration is negligible if it needs less than this part of the torque or force.
 constexpr double kIdleShare = 0.3;
 constexpr double kBlock_s = 0.5;
-/// Less sliding motion than this in total does not suffice, s.
+/// Least total time of sliding motion, s.
 constexpr double kLeastSliding_s = 0.2;
 
-/// Whether a record moves at one speed a direction, so that inertia hardly shows. Starts and reversals are a tenth at
-/// either end of the speeds at most; two speeds, or a slow run-up, are more.
+/// Whether a record has one speed per direction, so that the inertia hardly matters. Starts and reversals take at most
+/// a tenth at either end of the distribution of speeds; a second speed or a slow run-up takes more.
 bool is_steady(const std::vector<double>& speed, double slow, double inertia, const std::vector<double>& acceleration,
                const std::vector<double>& effort) {
   std::vector<double> speeds[2];
@@ -49,7 +49,8 @@ bool is_steady(const std::vector<double>& speed, double slow, double inertia, co
   return inertial <= kIdleShare * kIdleShare * efforts;
 }
 
-/// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the torque or force.
+/// Cut-off frequency: as high as the sampling allows, but lowered until the sensor noise is a hundredth of the torque
+/// or force.
 double cutoff_of(const Record& record, const AccelerationNoise& sensor, double inertia, double effort) {
   constexpr double kHighest_Hz = 120.0, kRateShare = 0.125, kNoiseShare = 0.01, kStep = 0.85, kLowest_Hz = 10.0;
   const double rate_Hz = 1.0 / record.sample_period_s;
@@ -60,7 +61,7 @@ double cutoff_of(const Record& record, const AccelerationNoise& sensor, double i
   return cutoff_Hz;
 }
 
-/// Response of the smoothed acceleration to one reading, one value a row.
+/// Response of the smoothed acceleration to one reading, one value per sample.
 std::vector<double> acceleration_of_a_reading(const ZeroPhaseLowPass& low_pass, double rate_Hz, double cutoff_Hz) {
   constexpr double kReach = 2.0;  // periods of the cut-off
   const auto reach = static_cast<std::size_t>(std::ceil(kReach * rate_Hz / cutoff_Hz));
@@ -74,7 +75,7 @@ std::vector<double> acceleration_of_a_reading(const ZeroPhaseLowPass& low_pass, 
 
 struct Builder {
   const sim::DriveDescription& model;
-  const sim::Drive* path;  ///< command path of the effects that the model has
+  const sim::Drive* path;  ///< the model's effects in the command path
   bool by_speed;
   double inertia;
   std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(6);
@@ -156,7 +157,7 @@ struct Builder {
   }
 };
 
-/// Relative training residual of inertia and friction.
+/// Relative training residual that inertia and friction leave.
 double left_by_base(const EffortRows& rows) {
   const auto n = static_cast<Eigen::Index>(std::ranges::count(rows.judges, false));
   Eigen::MatrixXd phi(n, 4);
@@ -204,8 +205,8 @@ bool enough(const EffortRows& rows, bool judges) {
 }  // namespace
 
 double most_noise(const EffortRows& rows, bool judges) {
-  // Rows are a quarter of the cut-off's period apart, so two of them make one independent value. The RMS of n such
-  // values has a relative standard deviation of 1/sqrt(2 n).
+  // The spacing of the rows is a quarter of the cut-off's period, so two rows make one independent value. The RMS of n
+  // such values has a relative standard deviation of 1/sqrt(2 n).
   const auto count = static_cast<double>(std::ranges::count(rows.judges, judges));
   return rows.noise * (1.0 + 2.0 / std::sqrt(std::max(count, 1.0)));
 }
@@ -254,7 +255,7 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
       if (enough(other, false) && left_by_base(other) < kClearlyBetterBySpeed * left_by_base(rows))
         rows = std::move(other);
     }
-  } catch (const Failure&) {  // without torque or force, or too short for the filter
+  } catch (const Failure&) {  // no torque or force, or too short for the filter
     return {};
   }
   rows.has_position = position;

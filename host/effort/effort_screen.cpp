@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-constexpr int kMostRounds = 16;  // further waves of a kind included; a bound on time
+constexpr int kMostRounds = 16;  // includes further waves of a kind; limits the time
 bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
   return std::ranges::find(kinds, kind) != kinds.end();
 }
@@ -38,7 +38,7 @@ class Search {
   }
 
  private:
-  /// The best model with a further term, fitted to the training rows; its list of kinds holds the term's once.
+  /// The best model with a further term, fitted to the training rows. No kind is listed twice.
   bool with(const EffortTerm& term, ScreenedModel& out) const {
     std::vector<const EffortTerm*> further = pointers_to(chosen_);
     further.push_back(&term);
@@ -67,16 +67,16 @@ class Search {
     return !effect.term.is_itself || effect.term.is_itself(out.model);
   }
 
-  /// Residual with each kind, for the report and for `add`.
+  /// The best model with each kind added, for the report and for `add`.
   std::vector<ScreenedModel> all_of(NextEffects& next) const {
-    // Forms are refined only for kinds that may be asked for.
+    // Forms are refined only for kinds that may be named.
     constexpr double kPossible = 1e-4;
     std::vector<ScreenedModel> list;
     for (NextEffect& effect : next.effects) {
       ScreenedModel tried;
       const bool closest = effect.probability > kPossible || next.effects.size() == 1;
       if (!(closest ? with_closest(effect, tried) : with(effect.term, tried))) continue;
-      if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further waves of an effect that was found
+      if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further wave of a known effect
       tried.probability = effect.probability;
       tried.confidence = logistic(effect.log_odds);
       list.push_back(std::move(tried));
@@ -84,13 +84,13 @@ class Search {
     return list;
   }
 
-  /// Held-back motions refute an effect as certainly as one is claimed: by chance they fit a little worse.
+  /// Refuting an effect needs the same confidence as a claim, because chance can raise the validation error a little.
   bool is_refuted(const ScreenedModel& taken) const {
     return regression_.confidence(screen_.best(), taken) <= 1.0 - kClaimed;
   }
 
-  /// The first kind of a group after the leader that held-back motions refute: it is not a rival. Null if all kinds
-  /// hold.
+  /// The first kind of a group, after the leader, that held-back motions refute, so that it is not a rival. Null if
+  /// there is none.
   NextEffect* refuted_rival(const std::vector<std::string>& group, NextEffects& next) const {
     for (std::size_t k = 1; k < group.size(); ++k) {
       NextEffect& rival = effect_of(next, group[k]);
@@ -100,7 +100,7 @@ class Search {
     return nullptr;
   }
 
-  /// Ends a step: kinds that were set aside are no longer rivals.
+  /// Ends a step. Kinds that were removed from the candidates get probability 0.
   void close_step(std::vector<ScreenedModel> list, const NextEffects& next) {
     for (ScreenedModel& tried : list) {
       const auto still = std::ranges::find(next.effects, tried.kinds.back(),
@@ -147,22 +147,22 @@ class Search {
       take_out(next, {kNoName});
   }
 
-  /// Least squares of a form in addition to the chosen ones.
+  /// Training error of a form beside the chosen ones, by least squares.
   std::optional<double> plain_error(const EffortTerm& term) const {
     ScreenedModel tried;
     if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
     return tried.train;
   }
 
-  /// Adds the most probable effect that is certain, holds on validation rows and explains enough of the error, or
-  /// several that do so together. Returns false if there is none.
+  /// Adds the most probable effect if it is certain, holds on validation rows and explains enough of the error; or the
+  /// first of several effects that do so together. Returns false if there is none.
   bool step(const EffortHypotheses& hypotheses) {
     NextEffects all = weigh(hypotheses);
     weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
     put_in_place_what_is_contained(list, all);
     if (screen_.leaves_noise()) leave_nothing(all);
-    // A certain effect with a small share is no rival of one with a large share.
+    // A certain effect that explains little is not a rival of one that explains much.
     std::vector<std::string> small;
     for (const ScreenedModel& tried : list)
       if (!is_worth_naming(tried)) small.push_back(tried.kinds.back());
@@ -181,7 +181,7 @@ class Search {
     return false;
   }
 
-  /// Fits the spring behind a gap that the encoder hardly resolves as finely, and puts it in the gap's place.
+  /// Replaces a gap that the encoder hardly resolves by a spring whose form is refined as much.
   void put_in_place_what_is_contained(std::vector<ScreenedModel>& list, NextEffects& next) const {
     const auto gap = std::ranges::find_if(next.effects, [](const auto& one) { return one.term.contained != nullptr; });
     if (gap == next.effects.end()) return;
@@ -199,7 +199,7 @@ class Search {
     list.push_back(std::move(fitted));
   }
 
-  /// A wider gap must explain part of the spring's residual.
+  /// Removes the gap from the candidates unless it explains a sufficient part of the residual that the spring leaves.
   void take_out_needless_gap(const std::vector<ScreenedModel>& list, NextEffects& next) const {
     const auto of = [&](const char* kind) {
       return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
@@ -209,7 +209,7 @@ class Search {
       take_out(next, {"backlash"});
   }
 
-  /// From the candidates; refuted ones are removed from them and, permanently, from `all`.
+  /// Takes one candidate. Refuted ones are removed from the candidates and, permanently, from `all`.
   bool take_one(NextEffects& next, NextEffects& all, const std::vector<ScreenedModel>& list) {
     while (true) {
       double probability = 0.0;
@@ -221,7 +221,7 @@ class Search {
         take_out(next, {refuted});
         continue;
       }
-      // If a further wave of a known effect suffices, no second effect is needed.
+      // If a further wave of an effect that has been found suffices, no second effect is needed.
       std::stable_partition(group.begin(), group.end(), [&](const std::string& kind) { return is_there(kind); });
       const std::string kind = group.front();
       NextEffect& effect = effect_of(next, kind);
@@ -253,7 +253,7 @@ class Search {
 
   bool is_there(const std::string& kind) const { return contains(screen_.best().kinds, kind); }
 
-  /// A wave that fails validation under one name is not tried under another.
+  /// A wave that fails validation as one kind is not tried again as another kind.
   void refuse_wave(const std::string& form, NextEffects& next) {
     refused_waves_.push_back(form);
     std::vector<std::string> same;
@@ -267,7 +267,7 @@ class Search {
     take_out(all, {kind});
   }
 
-  /// A group adds only its first kind, which represents all and may have further waves.
+  /// Of a group, only the first kind is added. It stands for the group and may have further waves.
   void keep(EffortTerm term, const std::vector<std::string>& group) {
     for (const std::string& other : group)
       if (other != term.kind || !term.can_repeat) excluded_.push_back(other);
@@ -300,7 +300,7 @@ class Search {
     double log_odds;
   };
 
-  /// Effects that are certain in addition to all that were found, but each too small to be named.
+  /// Effects that are certain beside all effects found, but each too small to be named.
   std::vector<SmallOne> small_ones(NextEffects all) {
     std::vector<SmallOne> small;
     while (true) {
@@ -319,10 +319,10 @@ class Search {
     }
   }
 
-  /// Adds the first of several effects that mask each other: only together they explain enough to be named.
+  /// Adds the first of several effects that mask each other: each alone explains too little to be named.
   bool take_small_ones_together(const NextEffects& all, const std::vector<ScreenedModel>& list) {
     NextEffects no_waves = all;
-    // Many waves fit any shape over the travel: the first one must be significant by itself.
+    // Many waves together fit any shape over the travel, so the first wave must be significant by itself.
     std::vector<std::string> waves;
     for (const NextEffect& effect : all.effects)
       if (effect.term.can_repeat) waves.push_back(effect.term.kind);
@@ -334,7 +334,7 @@ class Search {
         if (k != without) further.push_back(&together[k].term);
       return regression_.fit(base_, further, out);
     };
-    // Drops the smallest until each is needed.
+    // Removes the smallest effect until each is needed.
     for (bool dropped = true; dropped && together.size() > 1;) {
       ScreenedModel with_all;
       if (!fitted(together.size(), with_all)) return false;
@@ -350,7 +350,7 @@ class Search {
       if (dropped) together.erase(together.begin() + static_cast<std::ptrdiff_t>(smallest));
     }
     if (together.size() < 2) return false;
-    // The others follow in the next steps, in the form that fits best beside the first.
+    // The others follow in the next steps, each in the form that fits best beside the first.
     SmallOne& first = together.front();
     ScreenedModel taken;
     if (!with(first.term, taken)) return false;
@@ -362,7 +362,7 @@ class Search {
     return true;
   }
 
-  /// Whether another effect is certain beside one of two that mask each other.
+  /// Adds one of two effects that mask each other, if the other is certain beside it.
   bool take_one_of_two(const EffortHypotheses& hypotheses, const NextEffects& all,
                        const std::vector<ScreenedModel>& list) {
     const NextEffect* beside = less_seen_of_two(regression_, base_, chosen_, screen_.best(), all,
@@ -386,7 +386,7 @@ class Search {
     return true;
   }
 
-  /// The final model without a kind; empty if that cannot be fitted.
+  /// The final model without a kind; empty if it cannot be fitted.
   std::optional<ScreenedModel> without(const std::string& kind, std::vector<EffortTerm>& others) const {
     others = chosen_;
     std::erase_if(others, [&](const EffortTerm& term) { return term.kind == kind; });
@@ -419,7 +419,7 @@ class Search {
     drop(to_be_followed_, std::move(others), *std::move(left));
   }
 
-  /// An effect that was found first may have represented two that were found later.
+  /// An effect that was found early may have stood for two effects that were found later.
   void drop_what_others_explain(const EffortHypotheses& hypotheses) {
     for (std::size_t k = 0; screen_.chosen.size() > 1 && k + 1 < screen_.chosen.size();) {
       const std::string kind = screen_.chosen.back().kinds[k];
@@ -439,7 +439,7 @@ class Search {
   const std::vector<EffortTerm>& base_;
   std::vector<EffortTerm> chosen_ = {};
   std::vector<std::string> excluded_, refused_waves_ = {};
-  std::string to_be_followed_ = {};  ///< chosen for its gain together with another effect that is still to be found
+  std::string to_be_followed_ = {};  ///< chosen for its gain together with an effect that is not yet found
   EvidenceFit left_ = {};
 };
 
@@ -462,7 +462,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
   if (most_effects > 0) {
-    // Scale of usual sizes; without friction, a twentieth of the motor's torque or force.
+    // Scale of usual sizes. If there is no friction, it is a twentieth of the motor's torque or force.
     constexpr double kLeastLevel = 0.05;
     const sim::Drive fitted(screen.base.model);
     const double coulomb =
@@ -483,7 +483,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
 
 std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const EffortTerm& term) {
   const ScreenedModel& now = screen.best();
-  // The other terms are fitted again if the regression covers all of them.
+  // The other terms are fitted again only if the regression has a term for every effect of the model.
   const bool whole = screen.chosen.empty() || has_linear_form(now.model);
   const EffortRegression regression(now.model, screen.rows, whole ? screen.rows.effort : now.residual);
   ScreenedModel with;

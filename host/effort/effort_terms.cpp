@@ -50,7 +50,7 @@ bool is_linear(const sim::EffectEntry& entry) {
   return std::ranges::find(kLinear, entry.kind) != std::end(kLinear);
 }
 
-/// A term of one column whose entry follows from its factor and the model with its fitted base.
+/// A term with one column. `write` gets its factor and the model with the fitted base.
 EffortTerm simple(std::string kind, const VectorXd& column, int sign,
                   std::function<bool(double factor, sim::DriveDescription&)> write) {
   return {std::move(kind),
@@ -60,7 +60,8 @@ EffortTerm simple(std::string kind, const VectorXd& column, int sign,
           {}};
 }
 
-/// Friction that falls with speed: the part above the Coulomb level, `by_direction` if the model has two levels.
+/// Friction that decreases with speed: the part above the Coulomb level. `by_direction`: the model has a level for each
+/// direction.
 EffortTerm stribeck_term(bool by_direction, const EffortRows& rows, double fading) {
   const VectorXd shape = (-rows.w.array().abs() / fading).exp();
   EffortTerm term{"stribeck", {}, {}, {}, {}};
@@ -92,7 +93,7 @@ EffortTerm stribeck_term(bool by_direction, const EffortRows& rows, double fadin
   return term;
 }
 
-/// A force towards a centre within the travel.
+/// A force towards a centre within the travel, proportional to the distance.
 EffortTerm spring_term(const EffortRows& rows, double centre) {
   EffortTerm term =
       simple("spring_torque", rows.x.array() - centre, 0, [centre](double stiffness, sim::DriveDescription& fitted) {
@@ -106,7 +107,7 @@ EffortTerm spring_term(const EffortRows& rows, double centre) {
   return term;
 }
 
-/// Part of a command beyond the amplifier's limit: a factor of 1, otherwise it is something else.
+/// The part of a command above the amplifier's limit. Its factor must be 1; another value means another effect.
 EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRows& rows, double limit) {
   VectorXd given(rows.w.size());
   sim::DriveDescription standing = standing_part(model);
@@ -180,7 +181,7 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
       const std::string id = volts ? "offset" : "torque";
       terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
     } else if (is_linear(entry) && rows.has_position) {
-      // Parameters that these rows do not show keep their given value.
+      // Parameters that these rows cannot determine keep their given value.
       if (entry.kind != "cogging" && (rows.by_speed || rows.steady)) continue;
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
       std::vector<double> orders;
@@ -210,8 +211,9 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
     }
   }
   if (rows.timing_deviation > 0.0) {
-    // An offset estimated beside inertia and friction alone may be biased by every missing effect, so it is no prior.
-    // If none was estimated, the prior is a part of a sample: more is a delay, which is an effect.
+    // If an offset was estimated with inertia and friction alone, any missing effect may have biased it, so it is not
+    // used as a prior. If no offset was estimated, the prior is a part of a sample; a longer offset is a delay, which
+    // is an effect.
     constexpr double kPart = 0.25;
     EffortTerm timing{"effort_timing", rows.effort_per_sample, {0}, [](const VectorXd&, auto&) { return true; }, {}};
     timing.deviation = rows.timing_deviation < kBelievedTiming.deviation ? kBelievedTiming.deviation : kPart;
@@ -295,7 +297,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
   if (may_have("nonlinear_viscous"))
     for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
       const double saturation = part * top;
-      // Only flattening curves: friction that falls with speed is Stribeck friction.
+      // Only curves that become flatter: friction that decreases with speed is Stribeck friction.
       terms.push_back(simple(
           "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), 1,
           [saturation](double coefficient, sim::DriveDescription& fitted) {
@@ -315,7 +317,8 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
                            [](double width, sim::DriveDescription& fitted) {
                              return append(fitted, "dac_dead_zone", {{"width", width}});
                            }));
-  // At steady speeds all rows have the mean speed, to which a command that is cut to a constant fits best.
+  // At steady speeds all rows have the mean speed. A command that is cut to a constant would fit best there, so these
+  // effects are left out.
   if (rows.commanded && !rows.steady && may_have("current_saturation") && may_have("voltage_limit")) {
     const double most = rows.effort.cwiseAbs().maxCoeff();
     for (const double part : {0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95})
@@ -338,14 +341,14 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
     }
   }
   if (!rows.steady && may_have("input_delay") && may_have("current_loop_lag")) {
-    // T(t - d) = explained: the command leads the acting torque by d times its slope. The slope is that of inertia and
-    // friction, which contain no measurement noise.
+    // T(t - d) = explained: the command leads the acting torque by d times its slope. The slope is that of the torque
+    // of inertia and friction, which contains no measurement noise.
     VectorXd slope = VectorXd::Zero(rows.w.size());
     for (Index k = 1; k + 1 < rows.w.size(); ++k) {
       const double step_s = rows.t_s(k + 1) - rows.t_s(k - 1);
       const bool together =
           rows.record[static_cast<std::size_t>(k - 1)] == rows.record[static_cast<std::size_t>(k + 1)];
-      constexpr double kGap_s = 0.1;  // rows on both sides of a stop are not adjacent
+      constexpr double kGap_s = 0.1;  // rows before and after a stop are not adjacent
       if (together && step_s > 0.0 && step_s < kGap_s) slope(k) = (explained(k + 1) - explained(k - 1)) / step_s;
     }
     terms.push_back(simple("input_delay", slope, 1, [](double delay_s, sim::DriveDescription& fitted) {
@@ -356,7 +359,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
     }));
   }
   if (!rows.has_position) return terms;
-  // A spring without an equilibrium within the travel is a weight and its remainder.
+  // A spring with its equilibrium outside the travel is a weight plus a spring with its equilibrium inside.
   constexpr int kCentres = 5;
   const bool returns =
       std::ranges::any_of(rows.signals, [](const EffortSignals& one) { return comes_back(*one.record); });

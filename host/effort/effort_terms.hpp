@@ -1,4 +1,4 @@
-// Contribution of each effect of the catalogue to the torque or force of a motion, as columns of a linear regression.
+// Torque or force that each effect of the catalogue contributes to a motion, as columns of a linear regression.
 #pragma once
 
 #include <functional>
@@ -9,53 +9,56 @@
 
 namespace host {
 
-/// One effect in one form: its nonlinear parameters are fixed, its linear ones are the columns' factors.
+/// One effect in one form: its nonlinear parameters are fixed, and its linear parameters are the factors of the
+/// columns.
 struct EffortTerm {
   std::string kind;
   Eigen::MatrixXd columns;
-  std::vector<int> sign;  ///< of each factor: +1 it must not be negative (friction opposes motion), 0 any sign
-  /// Adds the effect to a model with a fitted base, by the columns' factors. False if these exceed the catalogue's
-  /// bounds.
+  std::vector<int> sign;  ///< of each factor: +1 if it must be >= 0 (friction opposes motion), 0 for any sign
+  /// Adds the effect to a model with a fitted base, from the factors of the columns. False if it exceeds the bounds of
+  /// the catalogue.
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
   std::string words;        ///< "orders 72, 18 of 6.283 mm"; may be empty
-  bool can_repeat = false;  ///< a drive may have several: waves of other periods
-  /// Forms whose shape differs by this part; empty if the forms to try are close enough. Refers to the rows.
+  bool can_repeat = false;  ///< a drive may have several of them: waves with other periods
+  /// Similar forms, whose shape differs by this part. Empty if the forms that are tried are close enough. Refers to the
+  /// rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
-  /// Whether the form that fits most closely is this effect and does not stand in for another; empty: it always is.
+  /// Whether the closest form is this effect and does not stand in for another. If empty, it always is.
   std::function<bool(const sim::DriveDescription& fitted)> is_itself{};
-  /// The effect of another kind that this form cannot be told from: of a gap that the encoder hardly resolves, the
-  /// spring behind it. Empty for most. Refers to the rows.
+  /// The effect of another kind that these rows cannot tell from this form: for a gap that the encoder hardly resolves,
+  /// the spring. Empty for most forms. Refers to the rows.
   std::function<EffortTerm()> contained{};
-  /// Prior standard deviation of the factors about 0; 0 if nothing is known of them.
+  /// Prior standard deviation of the factors about 0; 0 if there is no prior.
   double deviation = 0.0;
-  /// RMS of the torque or force that acts with this effect, over that of the logged one. The residual is expressed in
-  /// this unit: where nothing acts, nothing remains to be explained.
+  /// RMS of the torque or force that acts with this effect, relative to that of the logged torque or force. The
+  /// residual is relative to the torque or force that acts.
   double acting = 1.0;
 };
 
-/// Position of these terms in a fit that also has others.
+/// Pointers to these terms, for a fit that also has others.
 std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms);
 
 /// Adds an effect to a model; false if a parameter exceeds the catalogue's bounds.
 bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry);
 
-/// The base: inertia, viscous and Coulomb friction in the model's form, its further effects with a linear form, and the
-/// time at which a logged current acts, which is no part of the model.
+/// The terms of the base: inertia, viscous and Coulomb friction in the model's form, the model's further effects with a
+/// linear form, and the time offset of a logged current, which is not part of the model.
 std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const EffortRows& rows);
 
 /// Whether base_terms() represents the whole model.
 bool has_linear_form(const sim::DriveDescription& model);
 
-/// The model without the effects of base_terms() other than friction and inertia: effects with fixed parameters.
+/// The effects of the model that have no term in base_terms(), and its friction and inertia. The parameters of these
+/// effects stay fixed.
 sim::DriveDescription standing_part(const sim::DriveDescription& model);
 
-/// Torque or force at every row of the effects without a linear form, with the model's parameters; zero without any.
-/// Requires has_inverse() of the drive.
+/// Torque or force at every row from the effects without a linear form, with the model's parameters; zero if there are
+/// none. The drive must fulfil has_inverse().
 Eigen::VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& rows);
 
-/// All forms of the effects that could be added to the model and show while the axis slides, except waves over the
-/// travel and second masses. `explained`: torque or force by the terms so far. Effects in proportion to the torque use
-/// it, since the measured torque would explain itself.
+/// All forms of the effects that can be added to the model and show while the axis slides, except waves over the travel
+/// and second masses. `explained`: torque or force of the terms so far. Effects in proportion to the torque use it,
+/// because the measured torque would explain itself.
 std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                      const Eigen::VectorXd& explained);
 

@@ -20,10 +20,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Neighbouring waves of the grid differ by this part of a wave over the whole travel.
+/// Distance of neighbouring waves of the grid, in periods over the whole travel.
 constexpr double kApart = 0.3;
 constexpr int kMostOrders = 120, kMostFreeWaves = 400;
-/// A weight on an arm shows in a quarter of a turn; in less it looks like a spring.
+/// A weight on an arm is visible over a quarter of a turn; over less travel it looks like a spring.
 constexpr double kLeastOfATurn = 0.25;
 
 double travel_of(const EffortRows& rows) { return rows.x.maxCoeff() - rows.x.minCoeff(); }
@@ -100,7 +100,7 @@ MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave
   MatrixXd columns(rows.x.size(), 2);
   const double per_travel = wave.order / wave.period;
   for (Index k = 0; k < columns.rows(); ++k) {
-    // Gain of the rows' zero-phase filter for a wave at this speed.
+    // Gain of the rows' zero-phase filter for the frequency of a wave at this speed.
     const double cutoff_Hz = rows.signals[rows.record[static_cast<std::size_t>(k)]].cutoff_Hz;
     const double passing = std::pow(per_travel * rows.w(k) * rows.lead / cutoff_Hz, 2), fourth = passing * passing;
     const double seen = weight(k) / (1.0 + fourth * fourth);
@@ -123,7 +123,7 @@ MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortR
   const sim::EffectEntry *inertia = model.find("inertia"), *viscous = model.find("viscous");
   const double per_travel = 2.0 * std::numbers::pi * wave.order / wave.period;
   const double mass = inertia == nullptr ? 0.0 : inertia->at("J"), drag = viscous == nullptr ? 0.0 : viscous->at("B");
-  // For an error e(x) the reading has de/dt = v e' and d2e/dt2 = (dv/dt) e' + v^2 e'' more than the motor.
+  // For an error e(x), the reading exceeds the motor's speed by v e' and its acceleration by (dv/dt) e' + v^2 e''.
   const MatrixXd of_slope = wave_columns(rows, per_travel * (mass * rows.acceleration + drag * rows.w), wave);
   MatrixXd columns = wave_columns(rows, per_travel * per_travel * rows.lead * mass * rows.w.cwiseAbs2(), wave);
   columns.col(0) += of_slope.col(1);

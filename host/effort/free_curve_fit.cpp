@@ -20,18 +20,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Part of the validation rows' squared error that a further knot must explain.
+/// Part of the validation rows' squared error that additional knots must explain.
 constexpr double kLeastGainOfCurve = 0.01;
 
 struct Coordinate {
   VectorXd at;
   VectorXd weight;      ///< -1 or 1: friction changes sign with the motion
-  double period = 0.0;  ///< `at` goes from 0 to it and starts again
+  double period = 0.0;  ///< `at` runs from 0 to this and starts again; 0 if the curve does not repeat
 };
 
 using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
-/// A constant and a few orders of a period.
+/// Columns of a constant and the first orders of a period.
 MatrixXd orders_of(const EffortRows& rows, double period) {
   constexpr Index kOrders = 6;
   MatrixXd columns(rows.x.size(), 2 * kOrders + 1);
@@ -42,14 +42,14 @@ MatrixXd orders_of(const EffortRows& rows, double period) {
   return columns;
 }
 
-/// Squared error on some rows with factors fitted to others.
+/// Squared error on the rows `judged`, with factors fitted to the rows `fitted`.
 double left_elsewhere(const VectorXd& left, const MatrixXd& columns, const Mask& fitted, const Mask& judged) {
   const VectorXd use = fitted.cast<double>();
   const VectorXd factors = least_norm_solution(use.asDiagonal() * columns, use.cwiseProduct(left));
   return judged.select(left - columns * factors, 0.0).matrix().squaredNorm();
 }
 
-/// Whether a period found in two thirds of the travel also shows in the other third, for each third.
+/// Whether a period that is fitted to two thirds of the travel also shows in the other third, for each of the thirds.
 bool comes_back(const EffortRows& rows, const VectorXd& left, double period) {
   const MatrixXd columns = orders_of(rows, period);
   const double first = rows.x.minCoeff(), third = (rows.x.maxCoeff() - first) / 3.0;
@@ -120,7 +120,7 @@ std::vector<double> even_knots(double period, std::size_t count) {
   return knots;
 }
 
-/// Knots with equal numbers of training rows between them, or equally spaced over a period.
+/// Knots with equal numbers of training rows between them, or with equal distances over a period.
 std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinate, std::size_t count) {
   const VectorXd& at = coordinate.at;
   if (coordinate.period > 0.0) return even_knots(coordinate.period, count);
@@ -137,7 +137,7 @@ std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinat
   return knots;
 }
 
-/// Each knot's share in each row: hats that sum to 1.
+/// Value of each knot's hat function in each row; the hats sum to 1.
 MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
   MatrixXd columns = MatrixXd::Zero(coordinate.at.size(), static_cast<Index>(knots.size()));
   for (Index k = 0; k < coordinate.at.size(); ++k) {
@@ -156,7 +156,7 @@ MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
   return columns;
 }
 
-/// The curve's entry: `values` at `knots`, with intervals for fixed other parameters.
+/// The curve as an entry of the model: `values` at `knots`, with intervals that hold for fixed other parameters.
 sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knots, const VectorXd& values,
                           const MatrixXd& information, double variance) {
   sim::EffectEntry entry;
@@ -209,8 +209,8 @@ std::optional<FreeCurveFit> fitted_with_as_many_knots_as_pay(const EffortScreen&
   return best;
 }
 
-/// Over the torque itself, curve and inertia are not separable: the inertia is held. Without acceleration there is no
-/// other choice.
+/// A curve over the torque cannot be told from inertia, so the inertia is held. A motion without acceleration gives no
+/// curve.
 std::optional<FreeCurveFit> fitted_over_effort(const EffortScreen& screen) {
   if (screen.rows.steady) return {};
   EffortScreen standing = screen;
@@ -226,7 +226,7 @@ std::optional<FreeCurveFit> fitted_over_effort(const EffortScreen& screen) {
 std::optional<FreeCurveFit> fit_free_curve(const EffortScreen& screen, std::string_view over) {
   std::optional<FreeCurveFit> best;
   for (const std::string_view name : sim::kCurveCoordinates) {
-    // The torque explains itself: a curve over it is fitted only on request.
+    // The torque would explain itself, so a curve over it is fitted only on request.
     if (over.empty() ? name == "current" : name != over) continue;
     std::optional<FreeCurveFit> own =
         name == "current" ? fitted_over_effort(screen) : fitted_with_as_many_knots_as_pay(screen, name);

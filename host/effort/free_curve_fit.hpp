@@ -1,4 +1,4 @@
-// A curve where no formula fits: piecewise linear, with as many knots as the validation rows support.
+// A free curve for an effect without a formula: piecewise linear, with as many knots as the validation rows support.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ struct FreeCurveFit {
   std::string over;
   std::size_t knots = 0;
   double period = 0.0;  ///< mm or m; 0 if it does not repeat
-  ScreenedModel model;  ///< the screen's best model with the curve added
+  ScreenedModel model;  ///< best model of the screen, with the curve added
 };
 
-/// Fits the residual of the best model as a curve over a coordinate (sim::kCurveCoordinates), or over the best one in
-/// validation if `over` is empty. Empty if no curve lowers the validation error.
+/// Fits the residual of the best model as a curve over the coordinate `over` (sim::kCurveCoordinates), or over the best
+/// coordinate in validation if it is empty. Empty if no curve lowers the validation error.
 std::optional<FreeCurveFit> fit_free_curve(const EffortScreen& screen, std::string_view over = {});
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// Two effects that mask each other: with either of them alone, the residual varies as before.
+// Finds two effects that mask each other: either of them alone hardly reduces the residual.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,10 @@
 
 namespace host {
 
-/// Finds the pair with the smallest training residual that together explains more of the squared error than the sum of
-/// both alone, in training and in validation. Returns the one that explains less alone; null if no such pair is large
-/// enough to be named. Waves are excluded: together they fit any shape. `now`: the effects chosen so far, fitted.
+/// Finds the pair with the smallest training residual that explains more of the squared error than both effects alone
+/// together, in training and in validation. Returns the effect that explains less alone; null if no such pair is large
+/// enough to be named. Waves are excluded, because several waves fit any shape. `now`: fitted model with the effects
+/// chosen so far.
 const NextEffect* less_seen_of_two(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                                    const std::vector<EffortTerm>& chosen, const ScreenedModel& now,
                                    const NextEffects& all,

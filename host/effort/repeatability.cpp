@@ -7,13 +7,13 @@ namespace host {
 
 namespace {
 
-/// A motion repeats if it is within this part of its own spread.
+/// A motion repeats if its deviation is below this part of its own standard deviation.
 constexpr double kSame = 0.02;
-/// Repetition after less than this is a vibration, s.
+/// A period shorter than this is a vibration, s.
 constexpr double kShortest_s = 0.5;
 constexpr double kLeastSeconds = 2.0;
 
-/// The first lag after which a signal repeats, in samples; 0 if it does not.
+/// The shortest lag after which a signal repeats, in samples; 0 if it does not repeat.
 std::size_t period_of(const std::vector<double>& signal, double sample_s) {
   constexpr std::size_t kPoints = 1500;
   const std::size_t stride = std::max<std::size_t>(1, signal.size() / kPoints);
@@ -28,7 +28,8 @@ std::size_t period_of(const std::vector<double>& signal, double sample_s) {
     return sum / static_cast<double>(values.size() - lag);
   };
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / (sample_s * static_cast<double>(stride))));
-  // A misfit of one thinned sample moves a signal by its slope; the full rate decides.
+  // In the thinned signal a lag may be wrong by a part of a sample, so its limit is wider; the full sample rate
+  // decides.
   constexpr double kThinned = 25.0;
   for (std::size_t lag = std::max<std::size_t>(2, shortest); lag + lag / 4 + 2 < thin.size(); ++lag) {
     const double here = difference(thin, lag);

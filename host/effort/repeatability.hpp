@@ -1,4 +1,4 @@
-// Repeatable part of the residual, which a model could explain; the rest is noise.
+// Separates the repeatable part of the residual, which a model could explain, from the noise.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 namespace host {
 
 struct Repeatability {
-  double share = 0.0;    ///< part of the residual's square that repeated, 0 to 1
-  double floor = 0.0;    ///< RMS of the rest, Nm or N: the machine's noise floor
-  double seconds = 0.0;  ///< duration of the motion that was compared with its repetition
+  double share = 0.0;    ///< part of the squared residual that repeated, 0 to 1
+  double floor = 0.0;    ///< RMS of the rest: the machine's noise floor, Nm or N
+  double seconds = 0.0;  ///< duration of the motion compared with its repetition
 };
 
-/// Compares the residual of every row with that one period of the motion later, over the records whose motion repeats.
-/// Empty if that covers less than two seconds in total.
+/// Compares the residual of every row with the residual one period of the motion later, in records whose motion
+/// repeats. Empty if these have less than two seconds of motion in total.
 std::optional<Repeatability> repeatability(const EffortRows& rows, const Eigen::VectorXd& residual);
 
 }  // namespace host

@@ -18,20 +18,21 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kGapStep = 1.5;  ///< ratio of one tried width of the gap to the next
+constexpr double kGapStep = 1.5;  ///< ratio of successive widths of the gap that are tried
 
-/// A load behind a spring whose motor end moves as recorded.
+/// A load on a spring. The motor end of the spring follows the recorded motion.
 struct Load {
-  double resonance_Hz;  ///< with the motor held: the antiresonance that the motor sees
+  double resonance_Hz;  ///< resonance with the motor held, which is the motor's antiresonance
   double damping;
   double friction;         ///< Coulomb friction over inertia, rad/s^2 or m/s^2
   double gap = 0.0;        ///< free travel, rad or m
-  double least_gap = 0.0;  ///< smallest gap that the encoder shows: a smaller one is modelled as a spring
+  double least_gap = 0.0;  ///< smallest gap that the encoder shows; a smaller one is a spring
 };
 
-/// The coupling's pull over the load's inertia at every sample: w^2 d + 2 z w d', with d the twist beyond the gap,
-/// d'' = a - pull + friction sign(load's speed); behind a gap the contact pushes and never pulls (sim/coupling.hpp).
-/// Semi-implicit steps of an eighth of a radian. Friction can only slow the load down to rest, and then holds it.
+/// Force of the coupling over the inertia of the load, at every sample: w^2 d + 2 z w d', where d is the twist beyond
+/// the gap and d'' = a - pull + friction sign(load's speed). With a gap, the contact pushes and never pulls
+/// (sim/coupling.hpp). Semi-implicit integration with steps of an eighth of a radian. Friction can only slow the load
+/// down to rest and then holds it.
 std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
   std::vector<double> pulls(signals.speed.size());
   const double omega = 2.0 * std::numbers::pi * load.resonance_Hz, damping = 2.0 * load.damping * omega;
@@ -63,8 +64,8 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
   VectorXd column(rows.w.size());
   for (const EffortSignals& signals : rows.signals) {
     std::vector<double> pulls = pull_over(signals, load);
-    // The pull of a free load is as smooth as the motion. The pull of a load that strikes or sticks is not, so it is
-    // smoothed like the effort.
+    // The coupling force of a free load is as smooth as the motion. With impacts or stiction it is not, so it gets the
+    // same filter as the torque or force.
     if (load.gap > 0.0 || load.friction > 0.0)
       pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
     for (std::size_t k = 0; k < signals.kept.size(); ++k)
@@ -75,11 +76,11 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
 
 EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
-  // A load that its own friction holds acts as a hysteresis (a cable chain, a seal), whatever its mass.
+  // A load that is held by its own friction acts as a hysteresis (a cable chain, a seal), and its mass does not matter.
   constexpr double kHeld = 0.7;  // of the RMS pull
   const double pull = std::sqrt(term.columns.squaredNorm() / static_cast<double>(term.columns.rows()));
   const bool held = load.friction > kHeld * pull;
-  // Frequency and damping with the motor held become those of both masses, free to move.
+  // Converts frequency and damping with the motor held to those of motor and load free to move.
   term.write = [load, held, lead = rows.lead](const VectorXd& factors, sim::DriveDescription& fitted) {
     sim::EffectEntry& inertia = *fitted.find("inertia");
     const double whole = inertia.at("J") + factors(0), share = factors(0) / whole;
@@ -88,7 +89,8 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     inertia.parameters["J"] = whole;
     double part = 0.0;
     if (sim::EffectEntry* coulomb = fitted.find("coulomb"); coulomb != nullptr && on_load > 0.0) {
-      // The friction level of the regression is that of the motor alone; the model's level is that of motor and load.
+      // The friction level of the regression is that of the motor alone; the level in the model is that of motor and
+      // load.
       double level = 0.0;
       for (const auto& [id, value] : coulomb->parameters)
         level += std::abs(value) / static_cast<double>(coulomb->parameters.size());
@@ -105,11 +107,12 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     if (load.gap > 0.0) entry.parameters["gap"] = load.gap * lead;
     return append_within_bounds(fitted, std::move(entry));
   };
-  // With more damping there is no resonance, and the spring stands in for another effect. A load that strikes may have
-  // any damping. The search for the closest form may pass the limit: a form that stops at it is no spring either.
+  // With more damping there is no resonance, and the spring stands in for another effect. A load with impacts may have
+  // any damping. The search for the closest form may pass this limit, because a form that ends at the limit is not a
+  // spring either.
   if (load.gap <= 0.0)
     term.is_itself = [](const sim::DriveDescription& fitted) {
-      const double swings = 1.0 / std::numbers::sqrt2;  // beyond it the response has no maximum
+      const double swings = 1.0 / std::numbers::sqrt2;  // above it the response has no maximum
       return fitted.find("compliance")->at("damping_ratio") < swings;
     };
   if (load.gap > 0.0)
@@ -126,8 +129,7 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     };
   term.neighbours = [&rows, load, unit](double part) {
     std::vector<EffortTerm> around;
-    // Damping and friction are much less visible than the frequency; behind a gap, the frequency is hardly visible
-    // either.
+    // Damping and friction are much less visible than the frequency; with a gap, the frequency is also hardly visible.
     constexpr double kCoarser = 6.0;
     for (const double sign : {-1.0, 1.0}) {
       const double fine = std::exp(sign * part), coarse = std::exp(sign * kCoarser * part);
@@ -158,8 +160,8 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   const auto may_be = [&](const char* kind) { return std::ranges::find(absent, kind) == absent.end(); };
   for (const char* contact : {"compliance", "backlash", "presliding"})
     if (model.find(contact) != nullptr) return {};
-  if (rows.steady) return {};  // without acceleration a second mass does not show
-  // A resonance beyond the cut-off still shows as a deflection in proportion to the force.
+  if (rows.steady) return {};  // without acceleration a second mass is not visible
+  // A resonance above the cut-off is still visible as a deflection in proportion to the force.
   constexpr double kLowest_Hz = 1.0, kStep = 1.12, kShareOfCutoff = 0.8, kBeyond = 2.0;
   sim::DriveDescription base = model;
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
@@ -175,9 +177,9 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
     if (usual > 0.0)
       for (const double part : {0.25, 0.5, 1.0, 2.0, 4.0}) loads.push_back({resonance_Hz, 0.05, part * usual});
   }
-  // Gaps from a few counts of the encoder up to the catalogue's bound, at most a twentieth of the travel. The contact
-  // is stiff; its motion beyond the cut-off does not show. It is well damped, because a motion known to one count does
-  // not tell the times of bounces.
+  // Gaps from a few counts of the encoder to the catalogue's bound, but at most a twentieth of the travel. The contact
+  // is stiff, because motion above the cut-off is not visible. It is well damped, because a motion with a resolution of
+  // one count does not show the times of bounces.
   if (rows.has_position && may_be("backlash")) {
     const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
     constexpr double kOfTravel = 0.05;

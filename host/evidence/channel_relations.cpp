@@ -10,9 +10,9 @@ namespace host {
 
 namespace {
 
-/// Correlation (about zero) of the change of `path` over blocks with the sum of `rate` over them.
+/// Correlation (about zero) between the change of `path` over blocks and the sum of `rate` over the same blocks.
 double follows(const std::vector<double>& path, const std::vector<double>& rate) {
-  constexpr std::size_t kBlock = 10;  // rows: noise of either averages out, motion does not
+  constexpr std::size_t kBlock = 10;  // rows; long enough to average out the noise
   double pp = 0.0, pr = 0.0, rr = 0.0;
   for (std::size_t k = kBlock; k < path.size(); k += kBlock) {
     double sum = 0.5 * (rate[k - kBlock] + rate[k]);
@@ -50,7 +50,7 @@ AffineFit affine_fit(const std::vector<double>& of, const std::vector<double>& b
     oo += o * o;
   }
   AffineFit fit;
-  if (is_constant(of) || is_constant(by)) return fit;  // their variance is rounding
+  if (is_constant(of) || is_constant(by)) return fit;  // their variance is a rounding error
   if (!(bb > 0.0) || !(oo > 0.0) || !std::isfinite(bb) || !std::isfinite(oo)) return fit;
   fit.factor = ob / bb;
   fit.worst = 0.0;

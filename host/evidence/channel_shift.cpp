@@ -18,10 +18,11 @@ namespace {
 
 constexpr int kMostSamples = 30;
 constexpr double kWhole = 0.1;         ///< a logger shifts by whole samples: a shift within this distance of one counts
-constexpr double kPlain = 0.05;        ///< or a shift that leaves at most this part of the squares
+constexpr double kPlain = 0.05;        ///< any other shift counts if it leaves at most this part of the squares
 constexpr double kLogLikelihood = 20;  ///< difference that decides between two explanations
 
-/// Smallest of values over shifts -kMostSamples..kMostSamples, between samples by a parabola; empty at the ends.
+/// The shift with the smallest value, among -kMostSamples..kMostSamples, interpolated by a parabola; empty if it is at
+/// an end.
 std::optional<double> lowest_shift(const std::vector<double>& squares) {
   const auto lowest = std::ranges::min_element(squares) - squares.begin();
   const auto at = static_cast<std::size_t>(lowest);
@@ -32,7 +33,7 @@ std::optional<double> lowest_shift(const std::vector<double>& squares) {
   return static_cast<double>(lowest) - kMostSamples + 0.5 * (left - right) / bend;
 }
 
-/// Sum of squares of `target` minus gain and offset times `regressors`.
+/// Sum of squares of `target` after least squares on `regressors`.
 double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& target) {
   const Eigen::VectorXd cross = regressors.transpose() * target;
   return std::max(0.0, target.squaredNorm() - cross.dot(symmetric_solution(gram(regressors), cross)));
@@ -48,7 +49,7 @@ std::vector<double> rigid_squares(const Motion& motion, std::span<const std::siz
         motion.speed[k] < 0.0 ? 1.0 : 0.0;
   }
   Eigen::MatrixXd normal = gram(regressors);
-  normal.diagonal() *= 1.0 + 1e-9;  // a record may run one way only
+  normal.diagonal() *= 1.0 + 1e-9;  // singular if a record has only one direction
   std::vector<double> squares;
   Eigen::VectorXd effort(count);
   for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
@@ -100,7 +101,7 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
   const auto better = [&](double other) { return 0.5 * independent * std::log(other / squares[index]); };
   if (better(squares[kMostSamples]) < kLogLikelihood) return {};
   if (*shift > 0.0) {
-    // A lag that begins within a sample delays by up to half a sample more than its time constant.
+    // A lag that starts within a sample delays by up to half a sample more than its time constant.
     for (double lag = *shift - 0.75; lag < *shift + 0.8; lag += 0.25) {
       if (lag <= 0.0) continue;
       const double keep = std::exp(-1.0 / lag);
@@ -117,11 +118,11 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
 
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
-  constexpr double kFirstAnswer = 1.5;       // samples ahead of the command: friction can imitate one
+  constexpr double kFirstAnswer = 1.5;       // samples before the command; friction can look like one sample
   const double first_answer = record.u_V.empty() ? kLargestTiming : kFirstAnswer;
-  constexpr double kGain = 0.15;       // the squares must fall to this part; static friction alone makes 0.25
-  constexpr double kExplained = 0.02;  // of the squared torque or force: above it, friction determines the optimum
-  constexpr double kAlike = 0.5;       // samples, between the halves of a record
+  constexpr double kGain = 0.15;       // the squares must fall to this part; static friction alone gives 0.25
+  constexpr double kExplained = 0.02;  // of the squared torque or force; above it, friction determines the optimum
+  constexpr double kAlike = 0.5;       // samples; largest difference between the halves of a record
   MotionOptions options;
   options.decimation = 1;
   const std::optional<Motion> prepared = motion_if_long_enough(record, model.data, options);
@@ -145,7 +146,8 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
       squares[index] > kExplained)
     return {};
-  // A logger shifts the whole record equally; friction that a rigid model lacks imitates a shift in some parts only.
+  // A logger shifts the whole record equally. Friction that the rigid model lacks looks like a shift only in parts of
+  // it.
   const std::span<const std::size_t> all(rows);
   for (const auto half : {all.first(rows.size() / 2), all.last(rows.size() / 2)}) {
     const std::optional<double> own = lowest_shift(rigid_squares(motion, half));

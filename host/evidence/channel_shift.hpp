@@ -1,4 +1,4 @@
-// Finds channels that were logged early or late by more than a lag of the drive or a sensor explains.
+// Finds channels that were logged earlier or later than a lag of the drive or of a sensor can explain.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace host {
 
-/// prepare_motion(); empty where the record is too short for the filter, or its command is not known as an effort.
+/// prepare_motion(); empty if the record is too short for the filter or its command does not give a torque or force.
 std::optional<Motion> motion_if_long_enough(const Record& record, const sim::DataSheet& data,
                                             const MotionOptions& options);
 
-/// Samples by which the tachometer lags (> 0) or leads (< 0) the encoder. Empty without a shift, if a first-order lag
-/// fits as well (that is physics), or if the shift is not a whole number of samples and leaves a larger residual than a
-/// logger's shift does.
+/// Samples by which the tachometer lags (> 0) or leads (< 0) the encoder. Empty if there is no shift, if a first-order
+/// lag fits as well (which is physics), or if the shift is not a whole number of samples and leaves a larger residual
+/// than the shift of a logger would.
 std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data);
 
-/// Whole samples by which the axis answers before (> 0) or after (< 0) its command, beyond what a drive can do: before
-/// the command, or later than the dead times of the catalogue. Empty otherwise.
+/// Whole samples by which the motion starts before (> 0) or after (< 0) its command, if a drive cannot do that: before
+/// the command, or later than the dead times of the catalogue allow. Empty otherwise.
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model);
 
 }  // namespace host

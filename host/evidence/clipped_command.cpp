@@ -13,13 +13,12 @@ namespace host {
 
 namespace {
 
-constexpr double kAtLevel = 0.999;     ///< of the largest command
-constexpr double kLeastShare = 0.002;  ///< of all rows
-constexpr double kBelowLimit = 0.98;   ///< a command at the converter's limit is clipped by the converter
-constexpr double kLeastExcess =
-    0.15;  ///< of the level: more than friction that deviates from Coulomb's law can imitate
-constexpr double kLeastExcessByModel = 0.5;  ///< inertia and friction of a first model may be wrong by a third
-constexpr double kMostPlateaus = 0.8;        ///< part of the plateaus that must show it
+constexpr double kAtLevel = 0.999;           ///< of the largest command
+constexpr double kLeastShare = 0.002;        ///< of all rows
+constexpr double kBelowLimit = 0.98;         ///< closer to its limit, the converter itself clips the command
+constexpr double kLeastExcess = 0.15;        ///< of the level; more than a deviation from Coulomb friction can cause
+constexpr double kLeastExcessByModel = 0.5;  ///< a first model may be wrong by a third
+constexpr double kMostPlateaus = 0.8;        ///< least part of the plateaus that must show the excess
 constexpr std::size_t kFewestPlateaus = 3;
 
 Eigen::Vector4d regressors(const Motion& motion, std::size_t k) {
@@ -27,7 +26,7 @@ Eigen::Vector4d regressors(const Motion& motion, std::size_t k) {
   return {motion.acceleration[k], w, w > 0.0 ? 1.0 : 0.0, w < 0.0 ? 1.0 : 0.0};
 }
 
-/// Inertia and friction from the rows of `use`; empty if they do not determine them.
+/// Inertia and friction from the rows `use`; empty if these rows do not determine them.
 std::optional<Eigen::Vector4d> rigid_fit(const Motion& motion, const std::vector<std::size_t>& use) {
   constexpr std::size_t kFewestRows = 200;
   constexpr double kDetermined = 0.05;  // relative standard error of the inertia
@@ -70,7 +69,7 @@ std::optional<ClippedCommand> clipped_command(const Record& record, const sim::D
   if (!prepared) return std::nullopt;
   const Motion& motion = *prepared;
   const auto reach = static_cast<std::size_t>(std::ceil(0.5 * motion.sample_rate_Hz / motion.cutoff_Hz));
-  // Rows whose neighbourhood, as far as the filter reaches, is entirely below the level, or entirely at it.
+  // Rows around which the command is below the level, or at it, as far as the filter reaches.
   std::vector<std::size_t> below, at;
   std::vector<std::size_t> run(record.size());
   const auto is_at = [&](std::size_t row) { return std::abs(record.u_V[row]) >= kAtLevel * level_V; };
@@ -102,7 +101,7 @@ std::optional<ClippedCommand> clipped_command(const Record& record, const sim::D
   };
   std::vector<Plateau> plateaus;
   for (const std::size_t k : at) {
-    if (seen && std::abs(motion.speed[k]) > top_below) continue;  // friction is known at that speed only
+    if (seen && std::abs(motion.speed[k]) > top_below) continue;  // friction is known only up to that speed
     if (plateaus.empty() || k > plateaus.back().last + 1) plateaus.push_back({});
     const double sign = motion.effort[k] > 0.0 ? 1.0 : -1.0;
     Plateau& plateau = plateaus.back();

@@ -1,5 +1,5 @@
-// The command that a prediction applies: held, and changed once per row, at the time at which a logged current really
-// acts.
+// The command that a prediction applies: held between rows, and changed once per row, at the time at which a logged
+// current acts.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@ namespace host {
 
 class HeldCommand {
  public:
-  /// u_V, held from row to row, or the logged current as held_current moves it. Throws as command_volts.
+  /// Holds u_V from row to row, or the logged current with the shift of held_current. Throws as command_volts does.
   HeldCommand(const Record& record, const sim::DataSheet& data);
 
-  /// Advances the drive from `row` to the next.
+  /// Advances the drive from `row` to the next row.
   void step(const sim::Drive& drive, sim::DriveState& state, std::size_t row) const {
     const double t_s = (*t_s_)[row];
     if (rest_s_ <= 0.0) return drive.step(state, u_V_[row], t_s, change_s_);
@@ -30,7 +30,7 @@ class HeldCommand {
  private:
   const std::vector<double>* t_s_;
   std::vector<double> u_V_;
-  double change_s_, rest_s_;  ///< before and after the change within a row
+  double change_s_, rest_s_;  ///< time before and after the change within a row
 };
 
 }  // namespace host

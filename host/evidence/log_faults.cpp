@@ -96,13 +96,13 @@ std::optional<RigidEstimate> rigid_estimate(const Record& record, const sim::Dat
   return found;
 }
 
-/// Half of the 95 % interval is below a fifth of the value.
+/// Whether half of the 95 % interval is below a fifth of the value.
 bool sure(const Estimate& estimate) {
   constexpr double kSure = 0.2;
   return std::isfinite(estimate.value) && estimate.half_width() < kSure * std::abs(estimate.value);
 }
 
-/// Ratios of this record's base parameters to the model's; empty if the record does not determine them.
+/// Ratios of this record's base parameters to those of the model; empty if the record does not determine them.
 struct BaseFactors {
   double inertia, viscous, forward, backward;
 };
@@ -122,8 +122,8 @@ bool alike(double a, double b) {
   return a * b > 0.0 && a < kAlike * b && b < kAlike * a;
 }
 
-/// For a record without a model: the axis moves at a few thousandths of the converter's range, or the command is beyond
-/// that range most of the time.
+/// For a record without a model: reports a command that moves the axis at a few thousandths of the converter's range,
+/// or that is beyond the range most of the time.
 void find_odd_command(const Record& record, const sim::DataSheet& data, FaultList& faults) {
   constexpr double kTiny = 0.003;  // 30 mV of 10 V: below any drive's friction
   constexpr double kBeyond = 1.05, kMostBeyond = 0.3;
@@ -148,7 +148,7 @@ void find_odd_command(const Record& record, const sim::DataSheet& data, FaultLis
 }
 
 void find_wrong_scales(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
-  sim::DataSheet unlimited = model.data;  // the converter does not clip numbers in a wrong unit
+  sim::DataSheet unlimited = model.data;  // a command in a wrong unit must not be clipped
   unlimited.dac_limit_V = HUGE_VAL;
   const std::optional<RigidEstimate> found = rigid_estimate(record, unlimited);
   if (!found) return;
@@ -174,14 +174,14 @@ void find_wrong_scales(const Record& record, const sim::DriveDescription& model,
   if (off(inertia) && alike(inertia, level)) {
     const double factor = std::sqrt(inertia * level);
     faults.add(LogFaultKind::command_scale, command, record.t_s.front(), factor,
-               fmt::format("inertia and friction both come out {:.4g} times the model's: the column has the wrong unit "
+               fmt::format("inertia and friction are both {:.4g} times the model's: the column has the wrong unit "
                            "(or the model's gains are wrong); divide it by {:.4g}",
                            factor, factor));
   } else if (record.has_position() != record.has_speed() && off(inertia) && alike(inertia, viscous) &&
              alike(level, 1.0)) {
     faults.add(LogFaultKind::position_scale, record.has_position() ? &Record::x : &Record::w, record.t_s.front(),
                1.0 / inertia,
-               fmt::format("inertia and viscous friction come out {:.4g} times the model's, Coulomb friction does not: "
+               fmt::format("inertia and viscous friction are {:.4g} times the model's, Coulomb friction is not: "
                            "the column has the wrong unit; multiply it by {:.4g}",
                            inertia, inertia));
   }
@@ -197,7 +197,7 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
   }
   if (const std::optional<double> samples = command_shift(record, model)) {
     const double shift_s = *samples * record.sample_period_s;
-    // A filtered current is logged late by whole samples; a late command or an early current is a fault.
+    // A filtered current is logged late by whole samples. A late command or an early current is a fault.
     const bool late_current = record.u_V.empty() && shift_s > 0.0;
     faults.add(LogFaultKind::time_shift, record.u_V.empty() ? &Record::i_A : &Record::u_V, record.t_s.front(), shift_s,
                late_current
@@ -219,7 +219,7 @@ std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet
 
 namespace {
 
-/// Faults of the data sheet: missing fields, or another drive.
+/// Faults of the data sheet: missing fields, or a data sheet of another drive.
 void find_wrong_sheet(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
   const char* unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (!model.effects.empty() && !record.drive.empty() && !model.name.empty() && record.drive != model.name)
@@ -248,7 +248,7 @@ std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescripti
   find_wrong_sheet(record, model, faults);
   const PositionJumps jumps = position_jumps(record, model);
   report_jumps(record, jumps, faults);
-  // A record with jumps says nothing about scales and shifts.
+  // A record with jumps cannot show scales and shifts.
   if (jumps.none()) {
     find_wrong_scales(record, model, faults);
     find_clipping(record, model, faults);

@@ -10,10 +10,10 @@ namespace host {
 
 namespace {
 
-/// Finest step that counts as an encoder step, mm or m; ideal positions have none.
+/// Smallest step that counts as an encoder step, mm or m; computed positions have none.
 constexpr double kFinestStep = 1e-9;
 
-/// Variance of white noise from second differences (1 + 4 + 1 = 6), which motion hardly affects.
+/// Variance of white noise from second differences (factor 1 + 4 + 1 = 6), which motion hardly affects.
 double noise_variance(const std::vector<double>& values) {
   double squares = 0.0;
   for (std::size_t k = 2; k < values.size(); ++k)

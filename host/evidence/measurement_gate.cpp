@@ -21,7 +21,7 @@ namespace host {
 
 namespace {
 
-/// Largest share of validation rows that are also training rows; above it, validation is meaningless.
+/// Largest share of validation rows that may also be training rows. Above it, validation is meaningless.
 constexpr double kMostInCommon = 0.1;
 
 void require_known(const std::vector<std::string>& accepted) {
@@ -39,7 +39,7 @@ void require_known(const std::vector<std::string>& accepted) {
   }
 }
 
-/// Whole samples: the channel ran late (> 0) or early; rows without a partner are left out.
+/// Shifts a channel that is late (> 0) or early by whole samples. Rows without a partner are removed.
 void shift_back(Record& record, std::vector<double> Record::*channel, int late) {
   const auto cut = static_cast<std::size_t>(std::abs(late));
   if (record.size() <= cut) return;

@@ -67,7 +67,8 @@ std::vector<PeriodPeak> find_periods(const TravelSignal& signal, double shortest
   const auto [low, high] = std::ranges::minmax(signal.x);
   const double travel = high - low;
   if (travel <= 2.0 * shortest) return peaks;
-  // Zero padding to four times the travel shows every peak; eight cells a period keep the shortest one whole.
+  // Zero padding to four times the travel resolves every peak. Eight cells per period represent even the shortest
+  // period.
   constexpr double kPadding = 4.0, kCellsPerPeriod = 8.0;
   constexpr std::size_t kMostCells = std::size_t{1} << 20;
   std::size_t cells = 1024;

@@ -14,20 +14,20 @@ namespace host {
 
 namespace {
 
-constexpr double kEffortMargin = 5.0;  ///< multiple of the full torque or force that no model error explains
+constexpr double kEffortMargin = 5.0;  ///< of the full torque or force; no model error explains more
 constexpr double kStepMargin = 3.0;    ///< encoder steps that quantisation and interpolation may add
-constexpr double kJitter = 3.0;        ///< travel, in samples, that an unsteady clock may add or remove
+constexpr double kJitter = 3.0;        ///< samples of travel that clock jitter may add or remove
 constexpr int kFewestBits = 8;
 
-/// The power of two equal to a number of encoder steps, or 0.
+/// The number of encoder steps if it is a power of two, otherwise 0.
 double counter_range(double steps) {
   const int bits = static_cast<int>(std::lround(std::log2(steps)));
   constexpr double kTolerance = 2.0;  // steps
   return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? std::exp2(bits) : 0.0;
 }
 
-/// The range at which an angle wraps: all new zeros are the same distance apart, against the motion, and the position
-/// stays within that range. A turn of the shaft if it equals one; 0 without wraps.
+/// The range at which an angle wraps: all jumps have the same size, against the motion, and the position stays within
+/// that range. If the range equals a turn of the shaft, exactly one turn. 0 if nothing wraps.
 double angle_range(const Record& record, const std::vector<double>& sizes, double turn) {
   constexpr std::size_t kFewest = 2;
   constexpr double kAlike = 0.01;
@@ -39,8 +39,8 @@ double angle_range(const Record& record, const std::vector<double>& sizes, doubl
   return record.kind == sim::DriveKind::rotary && alike(turn) ? turn : range;
 }
 
-/// The 99 % quantile of the difference between successive steps. Without a known inertia it stands for what the drive
-/// can do.
+/// The 99 % quantile of the difference between successive steps. It is used as the limit of the drive if the inertia is
+/// unknown.
 double usual_change(const std::vector<double>& x) {
   constexpr double kUsual = 0.99;
   std::vector<double> changes;
@@ -48,11 +48,11 @@ double usual_change(const std::vector<double>& x) {
   return quantile(std::move(changes), kUsual);
 }
 
-/// Whether the step to row `k` compensates slower ones before it, so that the speed is constant over all of them: the
-/// rows between were late or filled in.
+/// Whether the step to row `k` makes up for slower steps before it, so that the mean speed over all of them is
+/// unchanged. The rows between were then late or repeated.
 bool catches_up(const std::vector<double>& x, std::size_t k) {
   constexpr std::size_t kMostRows = 50, kAround = 20;
-  constexpr double kSlow = 0.6, kKept = 0.5;  // of the speed; before a new zero no rows are held
+  constexpr double kSlow = 0.6, kKept = 0.5;  // of the speed; before a new zero no readings repeat
   std::vector<double> steps;
   for (std::size_t row = k < kAround ? 1 : k - kAround + 1; row < std::min(k + kAround, x.size()); ++row)
     steps.push_back(x[row] - x[row - 1]);
@@ -65,8 +65,8 @@ bool catches_up(const std::vector<double>& x, std::size_t k) {
   return false;
 }
 
-/// Median of the nonzero steps; 0 without any. A position that is held over several rows, or read coarsely, moves in
-/// steps that are large compared with their neighbours but not with these.
+/// Median of the nonzero steps; 0 if there are none. If readings repeat over several rows or are coarse, a step is
+/// large compared with its neighbours but not with this median.
 double usual_step(const std::vector<double>& x) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < x.size(); ++k)
@@ -95,9 +95,9 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
                                 : usual_change(record.x);
   const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
   const double usual = usual_step(record.x);
-  // The excess of a step over the steps around it.
+  // How far a step exceeds the steps around it.
   const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
-  std::vector<double> against_the_motion;  // sizes of new zeros
+  std::vector<double> against_the_motion;  // sizes of the jumps
   for (std::size_t k = 3; k + 2 < record.size(); ++k) {
     const double before = step(k - 1), after = step(k + 1), jump = excess(k);
     if (step(k) == 0.0 && std::abs(before) > impossible && after * before > 0.0 &&
@@ -112,7 +112,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
     const double speed = 0.5 * (before + after);
     const double samples = speed == 0.0 ? 0.0 : jump / speed;
     constexpr double kMostSamples = 50.0;
-    constexpr double kWhole = 0.1;  // of a sample: the speed hardly changes over a few of them
+    constexpr double kWhole = 0.1;  // of a sample; over a few samples the speed hardly changes
     const bool whole = samples > 0.5 && samples < kMostSamples &&
                        std::abs(samples - std::round(samples)) < kWhole + 3.0 * resolution / std::abs(speed) &&
                        std::abs(before - after) < 0.2 * std::abs(speed);
@@ -127,7 +127,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
       if (jump * speed <= 0.0) against_the_motion.push_back(std::abs(jump));
     }
-    ++k;  // steps next to a jump do not indicate another one
+    ++k;  // the steps next to a jump are not jumps
   }
   if (against_the_motion.size() == jumps.new_zeros && jumps.wraps == 0) {
     const double range = angle_range(record, against_the_motion, 2.0 * std::numbers::pi * model.data.lead);

@@ -13,8 +13,8 @@ namespace host {
 
 namespace {
 
-/// Standard deviation of the noise from third differences, whose variance is twenty times that of white noise and which
-/// motion hardly affects. At least that of the channel's quantisation.
+/// Standard deviation of the noise from third differences, which motion hardly affects and whose variance is twenty
+/// times that of white noise. At least that of the quantisation of the channel.
 double row_noise(const std::vector<double>& values) {
   std::vector<double> third, steps;
   for (std::size_t k = 3; k < values.size(); ++k) {
@@ -23,7 +23,7 @@ double row_noise(const std::vector<double>& values) {
     if (const double step = std::abs(values[k] - values[k - 1]); step > 0.0) steps.push_back(step);
   }
   if (steps.empty() || third.empty()) return 0.0;
-  constexpr double kMedian = 0.6745;  // of the magnitude of a normal variable, in standard deviations
+  constexpr double kMedian = 0.6745;  // median magnitude of a normal variable, in standard deviations
   return std::max(median(std::move(third)) / (kMedian * std::sqrt(20.0)), std::ranges::min(steps) / std::sqrt(12.0));
 }
 

@@ -1,4 +1,4 @@
-// A record prepared for comparison with a model: smoothed motion, and windows in which a prediction restarts.
+// A record prepared for comparison with a model: smoothed motion, and the windows in which a prediction restarts.
 #pragma once
 
 #include <cstddef>
@@ -12,39 +12,39 @@
 
 namespace host {
 
-/// Restarts at row `begin` and predicts rows begin+1 ... begin+length.
+/// A prediction restarts at row `begin` and covers rows begin+1 ... begin+length.
 struct Window {
   std::size_t begin;
   std::size_t length;
 };
 
-/// Length of a window, s: long enough for an effect to move the axis, short enough that the uncertainty of a restart
-/// does not dominate on a drive whose friction falls with speed (errors grow by some 50 /s).
+/// Length of a window, s. In this time an effect moves the axis enough, and the uncertainty of the restart does not yet
+/// dominate, even on a drive whose friction falls with speed (errors grow by some 50 /s).
 inline constexpr double kWindow_s = 0.1;
 
-/// A record made ready for comparison. Refers to the record, which must outlive it.
+/// A record prepared for comparison. Refers to the record, which must outlive it.
 struct PreparedRecord {
   const Record* record;
   std::vector<double> u_V;  ///< command_volts
-  HeldCommand held;         ///< the same as the drive holds it
-  double effort_noise;      ///< of one row, Nm or N; 0 if it is a command, which is known exactly
+  HeldCommand held;         ///< the same command, as the drive holds it
+  double effort_noise;      ///< noise of one row, Nm or N; 0 for a command, which is known exactly
   MotionSmoother smoother;
   std::vector<Window> windows;
   double period_s;
-  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every complete window of the record
+  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< weights of every complete window of the record
 
   const SmoothedMotion& motion() const { return smoother.motion(); }
   double window_s() const {
     return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
   }
-  /// Index of a window, which begins at a multiple of the common length; the last one may be shorter.
+  /// Windows begin at multiples of their common length; only the last window may be shorter.
   const ShiftWeights& weights_of(const Window& window) const {
     return (*shift_weights)[window.begin / windows.front().length];
   }
 };
 
 /// `base` gives the inertia and viscous friction that the smoother needs. Throws Failure(bad_input) for a record
-/// without a command, or shorter than one window.
+/// without a command or shorter than one window.
 PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, double window_s = kWindow_s);
 
 }  // namespace host

@@ -9,7 +9,7 @@ sim::DriveDescription presumed_sheet(const Record& record) {
   sheet.data.kind = record.kind;
   sheet.data.sample_period_s = record.sample_period_s;
   if (record.kind == sim::DriveKind::linear || !record.has_position() || !record.has_speed()) return sheet;
-  // Least squares of travel over angle. The sign is ignored, because a reversed tachometer is a fault.
+  // Least squares of travel over angle. The sign is ignored, because a reversed tachometer is a separate fault.
   double travel = 0.0, angle = 0.0;
   for (std::size_t k = 1; k < record.size(); ++k) {
     const double turned = 0.5 * (record.w[k] + record.w[k - 1]) * record.sample_period_s;

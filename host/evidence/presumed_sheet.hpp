@@ -1,4 +1,4 @@
-// A provisional data sheet from the record alone.
+// A provisional data sheet, from a record alone.
 #pragma once
 
 #include "host/record/record.hpp"
@@ -6,8 +6,8 @@
 
 namespace host {
 
-/// The record's kind of drive, and the travel per angle from position and speed (1 if one is missing). That suffices
-/// for the gate to check other records and channels, except torque or force.
+/// The kind of drive, and the travel per angle from position and speed (1 if one of them is missing). This suffices for
+/// the gate to check other records and channels, except torque or force.
 sim::DriveDescription presumed_sheet(const Record& record);
 
 }  // namespace host

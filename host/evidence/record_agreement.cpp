@@ -13,19 +13,20 @@ namespace host {
 namespace {
 
 /// If a rigid model leaves less than this part of the torque or force unexplained, the inertia is known well enough to
-/// show a load that changed by more than kLoad.
+/// show that the load has changed by more than kLoad.
 constexpr double kRigid = 0.03;
 constexpr double kLoad = 0.05;
-/// Above it, some effect biases the estimates; a change of scale biases inertia and friction equally.
+/// Above this part, some effect biases the estimates. Below it, a change of scale shows equally in inertia and
+/// friction.
 constexpr double kStillRigid = 0.15;
 constexpr double kScale = 0.03;
 constexpr double kAlike = 0.02;
-/// Relative uncertainty of the inertia, in the worst case, below which its agreement with another factor may be
-/// accidental.
+/// If the inertia deviates by less than this part of its worst-case uncertainty, it may agree with another factor by
+/// chance.
 constexpr double kLeastKnown = 0.5;
-/// If records disagree with one another, none of them can be called the wrong one.
+/// If all records disagree with one another, no single record can be called wrong.
 constexpr double kStandsOut = 3.0;
-/// Tachometers agree with the encoder within 0.5 % from record to record.
+/// Tachometer and encoder agree from record to record within 0.5 %.
 constexpr double kTachometer = 0.02;
 
 /// The normal equations of the rigid inverse model for one record.
@@ -36,14 +37,14 @@ struct RigidEquations {
   std::size_t rows = 0;
 
   Eigen::Vector4d solve() const { return least_norm_solution(normal, cross); }
-  /// Norm of the residual over norm of the torque or force.
+  /// Norm of the residual over the norm of the torque or force.
   double left(const Eigen::Vector4d& theta) const {
     const double squares = total - 2.0 * theta.dot(cross) + theta.dot(normal * theta);
     return total > 0.0 ? std::sqrt(std::max(0.0, squares) / total) : 1.0;
   }
-  /// Ratio of the torque or force to what these parameters predict.
+  /// Ratio of the torque or force to the value that these parameters predict.
   double scale_of(const Eigen::Vector4d& theta) const { return theta.dot(cross) / theta.dot(normal * theta); }
-  /// Relative error of the inertia if the whole residual were proportional to the acceleration.
+  /// Relative error of the inertia if the whole residual is proportional to the acceleration.
   double doubt(const Eigen::Vector4d& theta) const {
     const double alone = pseudo_inverse(normal)(0, 0);
     return left(theta) * std::sqrt(total * alone) / std::abs(theta(0));
@@ -57,7 +58,8 @@ struct RigidEquations {
   }
 };
 
-/// Samples that slide for sure, in both kinds of drive, below a cut-off that short delays and resonances hardly reach.
+/// Equations from samples in which both kinds of drive slide for certain, below a cut-off frequency at which short
+/// delays and resonances hardly matter.
 std::optional<RigidEquations> rigid_equations(const Record& record, const sim::DataSheet& data, double top_speed) {
   constexpr double kHighest_Hz = 30.0, kSlow = 0.01;
   constexpr std::size_t kFewestRows = 300;
@@ -81,7 +83,7 @@ std::optional<RigidEquations> rigid_equations(const Record& record, const sim::D
   return equations;
 }
 
-/// Whether inertia takes enough of the torque or force to be identified; a run at constant speed says nothing about it.
+/// Whether the inertia needs enough of the torque or force to be identified; at constant speed it does not.
 bool accelerates(const RigidEquations& equations, const Eigen::Vector4d& theta) {
   constexpr double kShare = 0.05;
   return std::sqrt(equations.normal(0, 0)) * std::abs(theta(0)) > kShare * std::sqrt(equations.total);
@@ -113,7 +115,7 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
       if (other.record != record) sum += other.equations;
     return sum;
   };
-  // Agreement of the other records among themselves.
+  // How well the other records agree with one another.
   const auto spread = [&](const Record* judged_record) {
     double largest = 0.0;
     for (const Known& one : known) {
@@ -140,7 +142,7 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
     const bool friction_too = alike(2) && alike(3);
     const double doubt = own->doubt(here) + rest.doubt(there);
     const bool another_load = left < kRigid && off > std::max(kLoad, doubt);
-    // The whole torque or force changed by the same factor as the inertia, which is no accident.
+    // The whole torque or force changed by the same factor as the inertia, which is not by chance.
     const bool by_one_factor = std::abs(inertia / scale - 1.0) < kAlike;
     const bool all_of_it = left < kRigid && std::abs(scale - 1.0) > std::max(kScale, 2.0 * left) && by_one_factor &&
                            off > kLeastKnown * doubt;
@@ -166,7 +168,8 @@ std::optional<Disagreement> record_disagreement(const std::vector<const Record*>
     if (!here || !there) continue;
     const double factor = here->gain.value / there->gain.value, off = std::abs(factor - 1.0);
     const double doubt = here->gain.half_width() + there->gain.half_width();
-    // If the speed hardly changes, a gain with an offset comes from clock jitter; a wrong scale affects everything.
+    // If the speed hardly changes, clock jitter looks like a gain with an offset. A wrong scale changes the whole
+    // signal.
     const double whole = std::abs(here->proportion / there->proportion - 1.0);
     if (off < kTachometer || off < kStandsOut * doubt || whole < 0.5 * off) continue;
     if (!worst || off > std::abs(worst->factor - 1.0)) worst = Disagreement{r, &Record::w, factor, false};

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kFewestSharedRows = 50;
 constexpr double kShortest_s = 0.1;
-/// Least number of different readings in a stretch with motion: standstill, or creep of a few encoder steps, may
-/// repeat.
+/// Least number of different readings in an interval with motion. With fewer, standstill or creep by a few encoder
+/// steps could be equal by chance.
 constexpr std::size_t kFewestReadings = 15;
 
 constexpr std::vector<double> Record::*kMeasured[] = {&Record::u_V, &Record::i_A, &Record::x, &Record::w};
 
-/// A hash of one row, equal for equal readings; 0 and -0 are equal.
+/// A hash of each row, equal for equal readings; 0 and -0 are equal.
 std::vector<std::uint64_t> row_hashes(const Record& record) {
   std::vector<std::uint64_t> hashes(record.size(), 0x9E3779B97F4A7C15u);
   for (const auto channel : kMeasured) {
@@ -50,8 +50,8 @@ RecordOverlap record_overlap(const Record& first, const Record& second) {
   if (first.size() < length || second.size() < length) return overlap;
   const std::vector<std::uint64_t> a = row_hashes(first), b = row_hashes(second);
 
-  // Stretches of the first record follow each other without overlap; a rolling sum over the second record's rows finds
-  // each.
+  // Tries successive intervals of the first record, without overlap, and finds each in the second record by a rolling
+  // sum.
   const auto sum_of = [&](const std::vector<std::uint64_t>& hashes, std::size_t begin) {
     std::uint64_t sum = 0;
     for (std::size_t k = begin; k < begin + length; ++k) sum += hashes[k];

@@ -18,31 +18,33 @@ namespace {
 
 using Amplitude = std::complex<double>;
 
-/// Least part of a rigid model's residual that the strongest period must explain in both records, and each further one.
+/// Least part of a rigid model's residual that a period must explain in both records: the strongest one, and each
+/// further one.
 constexpr double kStrong = 0.1, kFurther = 0.03;
-/// Amplitudes agree within this factor, and the halves of a record within this part of the amplitude. Only what is
-/// fixed to the travel does so, even if it is a small part of the residual.
+/// The amplitudes of two records must agree within this factor, and the halves of a record within this part of the
+/// amplitude. Only a pattern that is fixed to the travel does so, even if it is a small part of the residual.
 constexpr double kAlikeFriction = 1.5, kSteady = 0.5;
-/// Correlation of two patterns at the best shift. Without a shift they certainly differ at 45 degrees of phase; once a
-/// zero is known to be lost, 15 degrees suffice.
+/// Correlation of two patterns at the best shift. If it is below kDiffers without a shift (45 degrees of phase), the
+/// zeros certainly differ. If another zero is known to be lost, below kSame (15 degrees) suffices.
 constexpr double kAgrees = 0.9, kDiffers = 0.7, kSame = 0.97;
 /// Largest uncertainty of a phase, as a part of the period.
 constexpr double kMostOpen = 0.1;
-/// A period that explains less than this part of what the strongest explains is ignored.
+/// A period that explains less than this part of the share of the strongest period is ignored.
 constexpr double kAsGood = 0.8;
 constexpr double kPeriodsOfTravel = 4.0;
 constexpr std::size_t kPeaks = 5;
-/// More rows than this add cost and no information.
+/// More rows than this take time without adding information.
 constexpr std::size_t kMostRows = 3000;
 
-/// The pattern is proportional to: nothing (cogging), the direction (friction) or the torque (torque ripple).
+/// The pattern is constant in size (cogging), or proportional to the direction (friction) or to the torque (torque
+/// ripple).
 constexpr std::size_t kWeights = 3;
 
 struct TravelResidual {
   std::vector<double> x, left;
   std::array<std::vector<double>, kWeights> weight;
   std::array<std::vector<PeriodPeak>, kWeights> peaks;
-  double middle = 0.0, travel = 0.0;     ///< of x, mm or m
+  double middle = 0.0, travel = 0.0;     ///< middle and range of x, mm or m
   double size = 0.0;                     ///< norm of `left`, Nm or N
   double shortest = 0.0, longest = 0.0;  ///< candidate periods of the record, mm or m
 
@@ -102,7 +104,7 @@ std::optional<TravelResidual> travel_residual(const Record& record, const sim::D
   return residual;
 }
 
-/// By the channel whose motion leaves the smaller residual.
+/// Uses the channel whose motion leaves the smaller residual.
 std::optional<TravelResidual> travel_residual(const Record& record, const sim::DataSheet& data) {
   if (!record.has_position()) return {};
   std::optional<TravelResidual> residual = travel_residual(record, data, false);
@@ -133,7 +135,7 @@ struct Pattern {
   }
 };
 
-/// Correlation of two patterns when the second one's travel is shifted, -1 to 1.
+/// Correlation of two patterns if the travel of the second one is shifted, -1 to 1.
 double agreement(const Pattern& a, const Pattern& b, double shift) {
   double sum = 0.0;
   for (std::size_t n = 0; n < a.amplitude.size(); ++n)
@@ -142,7 +144,7 @@ double agreement(const Pattern& a, const Pattern& b, double shift) {
   return sum / std::max(a.size() * b.size(), 1e-300);
 }
 
-/// Whether both halves of a record show a period in one place.
+/// Whether a period has the same phase and amplitude in both halves of a record.
 bool is_steady(const TravelResidual& residual, std::size_t weight, double period) {
   const std::size_t half = residual.x.size() / 2;
   const Amplitude first = amplitude_of(peak_at(residual.signal(weight, 0, half), period));
@@ -150,10 +152,10 @@ bool is_steady(const TravelResidual& residual, std::size_t weight, double period
   return std::abs(first - second) < kSteady * std::min(std::abs(first), std::abs(second));
 }
 
-/// Periods that both records show with one amplitude, in proportion to a weight.
+/// Periods that both records show with equal amplitude, with the same kind of weight.
 struct SharedPattern {
   Pattern here, there;
-  double share = 0.0;  ///< the smaller one, of the strongest period
+  double share = 0.0;  ///< share of the strongest period, the smaller one of the two records
 };
 
 SharedPattern shared_pattern(const TravelResidual& first, const TravelResidual& second, std::size_t weight) {
@@ -164,7 +166,8 @@ SharedPattern shared_pattern(const TravelResidual& first, const TravelResidual& 
   for (const PeriodPeak& peak : first.peaks[weight]) {
     const auto off = [&](const PeriodPeak& other) { return std::abs(1.0 / other.period - 1.0 / peak.period); };
     const auto same = std::ranges::min_element(second.peaks[weight], {}, off);
-    // The difference of the two records' own periods gives the uncertainty of one phase at the other record's travel.
+    // The uncertainty of the period gives the uncertainty of its phase at the other record's travel. It follows from
+    // the difference between the periods of the two records.
     if (same == second.peaks[weight].end() || off(*same) * apart > kMostOpen) continue;
     const double period = first.travel > second.travel ? peak.period : same->period;
     const PeriodPeak here = peak_at(signals[0], period), there = peak_at(signals[1], period);
@@ -180,7 +183,7 @@ SharedPattern shared_pattern(const TravelResidual& first, const TravelResidual& 
   return shared;
 }
 
-/// Share of the strongest period that a record shows in one place throughout.
+/// Share of the strongest period that has the same phase and amplitude throughout a record.
 double steady_share(const TravelResidual& residual) {
   double best = 0.0;
   for (std::size_t w = 0; w < kWeights; ++w)

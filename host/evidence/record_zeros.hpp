@@ -1,4 +1,4 @@
-// Checks that records that were homed separately share their zero, by patterns that repeat along the travel.
+// Checks that records that were homed separately have the same zero, by patterns that repeat along the travel.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 namespace host {
 
 struct AnotherZero {
-  std::size_t record = 0;     ///< whose zero differs
-  std::size_t reference = 0;  ///< from this one's, which shows the pattern best
-  double shift = 0.0;         ///< to add to its position, mm or m; unknown by whole multiples of `period`
+  std::size_t record = 0;     ///< the record whose zero differs
+  std::size_t reference = 0;  ///< the record with which it is compared, which shows the pattern best
+  double shift = 0.0;         ///< to add to its position, mm or m; determined up to multiples of `period`
   double period = 0.0;        ///< longest significant period of both records, mm or m
 };
 
-/// Analyses the residual of a rigid model over the travel. If a period and its orders are significant in two records
-/// with equal amplitude but different phase, their zeros differ. Records without such a period, or with less than four
-/// periods of travel, give no answer.
+/// Analyses the residual of a rigid model over the travel. The zeros of two records differ if a period and its orders
+/// are significant in both, with equal amplitude but different phase. Records without such a period, or with less than
+/// four periods of travel, are not compared.
 std::vector<AnotherZero> other_zeros(const std::vector<const Record*>& records, const sim::DataSheet& data);
 
 }  // namespace host

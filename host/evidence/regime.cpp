@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kReversalTravel_m = 50e-6;
 
-/// Speeds below this part of the record's top speed count as low: friction curves fall within some 5 rad/s of 100.
+/// Speeds below this part of the record's top speed are low: friction curves fall within some 5 of 100 rad/s.
 constexpr double kLowSpeed = 0.05;
 
 /// The speed counts as constant while the acceleration is below this part of its 95 % quantile.
@@ -20,7 +20,7 @@ constexpr double kConstantSpeed = 0.1;
 /// A reversal counts once the axis has moved back by this many encoder steps.
 constexpr double kBelievedSteps = 2.0;
 
-/// The acceleration uses this many samples on each side.
+/// The acceleration is computed over this many samples on each side.
 constexpr std::size_t kRowsAround = 3;
 
 std::vector<double> acceleration_of(const std::vector<double>& w, double period_s) {
@@ -32,11 +32,12 @@ std::vector<double> acceleration_of(const std::vector<double>& w, double period_
   return acceleration;
 }
 
-/// Rows within `reach` of travel after each turning point from which the axis has moved back by `believed`.
+/// Rows within `reach` of travel after each turning point. A turning point counts once the axis has moved back by
+/// `believed`.
 std::vector<bool> rows_after_reversals(const std::vector<double>& x, double reach, double believed) {
   std::vector<bool> after(x.size(), false);
   std::size_t extreme = 0;
-  double direction = 0.0;  // unknown until the axis has moved
+  double direction = 0.0;  // 0 until the axis has moved
   for (std::size_t k = 1; k < x.size(); ++k) {
     const double moved = x[k] - x[extreme];
     if (direction == 0.0) {

@@ -1,4 +1,4 @@
-// Classifies each sample: standstill, reversal, low speed, constant speed, acceleration, braking.
+// Assigns each sample to a regime: standstill, reversal, low speed, constant speed, acceleration, braking.
 #pragma once
 
 #include <string_view>
@@ -14,13 +14,13 @@ inline constexpr Regime kRegimes[] = {Regime::standstill,       Regime::reversal
                                       Regime::constant_speed,   Regime::acceleration, Regime::braking,
                                       Regime::saturated_command};
 
-/// "constant_speed", as in JSON.
+/// "constant_speed" etc., as in JSON.
 std::string_view regime_name(Regime regime);
 
-/// Travel after a reversal that still belongs to it, mm or m: 50 um, while elastic contacts wind up.
+/// Travel after a reversal that still belongs to the reversal, mm or m: 50 um, in which elastic contacts wind up.
 double reversal_travel(const sim::DataSheet& data);
 
-/// One element a sample. A saturated command comes before all others, standstill before a reversal.
+/// One element per sample. Saturation of the command takes precedence over all others, standstill over reversal.
 std::vector<Regime> regimes_of(const PreparedRecord& prepared, const sim::DataSheet& data);
 
 }  // namespace host

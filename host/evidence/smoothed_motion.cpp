@@ -30,8 +30,8 @@ struct MotionSmoother::Observation {
 namespace {
 
 /// Step of the disturbance's random walk per sample at 1 kHz, as a part of the friction level: 0.03 V on the paper's x
-/// axis. That is a tenth of the on-line variance (48), since a smoother uses both sides of a sample, and averages the
-/// speed over some 5 ms. Without much friction, a part of the command's RMS.
+/// axis. That is a tenth of the on-line variance (48), because a smoother uses both sides of a sample. It averages the
+/// speed over some 5 ms. If there is hardly any friction, a part of the command's RMS is used.
 constexpr double kQuietPartOfFriction = 0.045;
 constexpr double kQuietPartOfCommand = 0.01;
 
@@ -39,19 +39,19 @@ constexpr double kQuietPartOfCommand = 0.01;
 /// speed.
 constexpr double kReach_s = 0.05;
 
-/// Part of a recent change of the command that may arrive otherwise than the model says (dead time, current loop).
+/// Part of a recent change of the command that may act differently from the model (dead time, current loop).
 constexpr double kCommandDoubt = 0.3;
 
-/// That uncertainty lasts this long after a change of the command, s.
+/// This uncertainty lasts this long after a change of the command, s.
 constexpr double kCommandMemory_s = 0.004;
 
-/// An axis without an encoder edge for this long counts as standing, s.
+/// An axis without an encoder edge for this long stands still, s.
 constexpr double kStanding_s = 0.06;
 
-/// A starting axis moves before its first encoder edge; this time before the edge does not count as standing, s.
+/// An axis moves before its first encoder edge; this time before the edge is not standstill, s.
 constexpr double kStart_s = 0.006;
 
-/// Speeds are known to be zero at standstill, up to creep below one count: this fraction of a count per standing time.
+/// At standstill the speed is zero except for creep below one count: at most this fraction of a count per kStanding_s.
 constexpr double kCreepCounts = 0.1;
 
 std::vector<bool> find_standing(const std::vector<double>& x, double resolution, double period_s) {
@@ -62,7 +62,7 @@ std::vector<bool> find_standing(const std::vector<double>& x, double resolution,
   for (std::size_t k = 1; k <= x.size(); ++k) {
     if (k < x.size() && std::abs(x[k] - x[begin]) <= 0.25 * resolution) continue;
     if (k - begin >= shortest) {
-      // The first sample on a count may still move, and so do the last ones unless the record ends there.
+      // The axis may still move at the first sample on a count and at the last ones, unless the record ends there.
       const std::size_t end = k < x.size() ? k - std::min(start, k - begin) : k;
       for (std::size_t row = begin == 0 ? 0 : begin + 1; row < end; ++row) standing[row] = true;
     }
@@ -71,8 +71,8 @@ std::vector<bool> find_standing(const std::vector<double>& x, double resolution,
   return standing;
 }
 
-/// Information of a quantised position: much at an edge (the axis is between two counts), little on a count, less where
-/// the errors of successive counts are alike. `alike`: see repeated_counts().
+/// Information of a quantised position: much at an edge, where the axis is between two counts; little on a count; less
+/// if the errors of successive counts are alike. `alike`: see repeated_counts().
 template <typename Observations>
 void observe_counts(const std::vector<double>& x, double resolution, double period_s, double lead,
                     const std::vector<double>& w, const std::vector<double>& alike, Observations& observed) {
@@ -98,7 +98,7 @@ void observe_counts(const std::vector<double>& x, double resolution, double peri
 template <typename Observations>
 void doubt_friction(const std::vector<double>& w, const std::vector<bool>& standing, double level_V,
                     Observations& observed) {
-  constexpr std::size_t kReach = 2;  // the instant of a start or reversal is known to within some samples only
+  constexpr std::size_t kReach = 2;  // samples; uncertainty of the time of a start or reversal
   for (std::size_t k = 1; k < w.size(); ++k) {
     if (!(w[k] * w[k - 1] < 0.0 || standing[k] != standing[k - 1])) continue;
     for (std::size_t row = k - std::min(k, kReach + 1); row < std::min(w.size(), k + kReach); ++row)
@@ -206,7 +206,7 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   smooth(observed, u_V, start);
   if (!by_position_) return;
 
-  // The first pass finds the reversals; the second uses them.
+  // The first pass finds the reversals, which the second pass needs.
   const std::vector<double> rough_w = motion_.w;
   const std::vector<bool> standing = find_standing(record.x, resolution, period_s);
   for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];

@@ -10,29 +10,28 @@
 
 namespace host {
 
-/// One sample an element. Travel in mm or m, speed in rad/s or m/s.
+/// One element per sample. Travel in mm or m, speed in rad/s or m/s.
 struct SmoothedMotion {
   std::vector<double> x;
   std::vector<double> w;
-  std::vector<double>
-      disturbance;  ///< torque or force that the linear drive does not explain, Nm or N (friction included)
-  std::vector<double> x_variance;  ///< of the errors of x and w, and their covariance
+  std::vector<double> disturbance;  ///< torque or force beyond that of the linear drive, Nm or N (includes friction)
+  std::vector<double> x_variance;   ///< variances of the errors of x and w, and their covariance
   std::vector<double> w_variance;
   std::vector<double> xw_covariance;
   std::vector<bool> standing;  ///< the encoder shows no motion
-  double hidden_creep = 0.0;   ///< speed below which it could not show any, rad/s or m/s
+  double hidden_creep = 0.0;   ///< largest speed that the encoder cannot show, rad/s or m/s
 };
 
-/// Amplifier gain that turns a logged current into a command, A/V. Throws
-/// Failure(bad_input) if the record has no current, or the data sheet no gain.
+/// Amplifier gain that converts a logged current to a command, A/V. Throws Failure(bad_input) if the record has no
+/// current or the data sheet has no gain.
 double current_per_volt(const Record& record, const sim::DataSheet& data);
 
-/// Commands in volts at the amplifier's input, each the mean from its row to the next: u_V, or the logged current over
-/// the amplifier's gain. Throws Failure(bad_input) if neither is available.
+/// Commands in volts at the amplifier's input, each the mean from its row to the next: u_V, or the logged current
+/// divided by the amplifier's gain. Throws Failure(bad_input) if neither is available.
 std::vector<double> command_volts(const Record& record, const sim::DataSheet& data);
 
-/// Sensitivity of one row's smoothed state to encoder readings and commands around it. The smoother is linear: one
-/// weight per row, and contributions add up.
+/// Sensitivity of one row's smoothed state to encoder readings and commands around it. The smoother is linear, so each
+/// row has one weight and the contributions add up.
 struct ShiftWeights {
   std::size_t first = 0;                           ///< row of the first weight
   std::vector<double> x_of_reading, w_of_reading;  ///< per mm (m) of change of a row's reading
@@ -41,20 +40,20 @@ struct ShiftWeights {
   struct Shift {
     double x, w;
   };
-  /// Changes of the rows from `first` on; either may be empty.
+  /// Shift of the smoothed state by changes of the rows from `first` on; either may be empty.
   Shift shift(std::span<const double> reading, std::span<const double> command_V) const;
 };
 
-/// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command
-/// and corrected by the encoder only, so that tachometer errors do not enter. A record without a position is smoothed
+/// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command.
+/// It is corrected only by the encoder, so that tachometer errors do not enter. A record without a position is smoothed
 /// from its speed. The gains depend on the record; further signals pass through the same filter.
 class MotionSmoother {
  public:
-  /// `inertia` and `viscous` must be right within some 30 %; the disturbance takes the rest. `friction_level` (Nm or
-  /// N): approximate jump of the friction at a start, stop or reversal.
+  /// `inertia` and `viscous` must be correct within some 30 %; the disturbance absorbs the rest. `friction_level`:
+  /// approximate jump of the friction at a start, stop or reversal, Nm or N.
   MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
                  double friction_level);
-  /// With the inertia and the friction of a model. Throws Failure(bad_input) if it has no inertia.
+  /// Takes the inertia and the friction of a model. Throws Failure(bad_input) if the model has no inertia.
   MotionSmoother(const Record& record, const sim::DriveDescription& model);
 
   const SmoothedMotion& motion() const { return motion_; }
@@ -67,7 +66,7 @@ class MotionSmoother {
 
  private:
   struct Observation;
-  /// Gains of one sample: of its measurement, of known standstill, and of the backward pass.
+  /// Gains of one sample: of its measurement, of a known standstill, and of the backward pass.
   struct Gains {
     Eigen::Vector3d measurement;
     Eigen::Vector3d standstill;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSlowest_mm_s = 0.5;
 constexpr int kBinsPerDecade = 6;
 
-/// A speed counts as held while it changes by less than this part over a tenth of a second.
+/// A speed counts as constant if it changes by less than this part within a tenth of a second.
 constexpr double kHeldWithin = 0.1;
 constexpr double kHeldFor_s = 0.1;
 

@@ -1,4 +1,4 @@
-// Finds constant speeds that a set of records lacks; friction at these speeds is extrapolated.
+// Finds constant speeds that are missing in a set of records, at which the friction is only extrapolated.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace host {
 
-/// Speeds of the table, mm/s, between which no record has a constant speed.
+/// Two speeds of the table, mm/s. No record has a constant speed between them.
 struct SpeedGap {
   double low_mm_s;
   double high_mm_s;
 };
 
-/// The widest gap, on a logarithmic scale, between 0.5 mm/s (the slowest Stribeck speeds) and the top speed; empty if
-/// it is less than a factor of three.
+/// The gap with the largest ratio between 0.5 mm/s (the slowest Stribeck speeds) and the top speed; empty if the ratio
+/// is less than three.
 std::optional<SpeedGap> widest_speed_gap(const std::vector<const PreparedRecord*>& records, const sim::DataSheet& data);
 
-/// A sentence that says what to record to cover this gap.
+/// A sentence that says which motion to record to close this gap.
 std::string speeds_to_record(const SpeedGap& gap);
 
 }  // namespace host

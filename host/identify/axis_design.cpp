@@ -13,7 +13,8 @@ namespace host {
 
 namespace {
 
-/// Eq. (47): the paper's tachometer variance for design, above the measured (46) because the noise varies.
+/// Eq. (47): the paper's tachometer variance for the design. It is above the measured one (46) because the noise
+/// varies.
 constexpr double kPaperTachVariance_rad2_s2 = 0.05;
 
 [[noreturn]] void refuse(const std::string& what) { throw Failure(ExitCode::bad_input, what); }
@@ -67,7 +68,7 @@ void describe_observer(AxisDesign& design, double sample_period_s) {
   }
 }
 
-/// Checks that gains are finite and the observer is stable.
+/// Requires finite gains and a stable observer.
 void require_usable(const AxisDesign& design) {
   const bool settles = std::ranges::all_of(design.observer_poles, [](const auto& z) { return std::abs(z) < 1.0; });
   if (settles && design.Kobs.allFinite() && design.Kc.allFinite()) return;
@@ -83,11 +84,11 @@ void require_usable(const AxisDesign& design) {
 
 Eigen::Matrix3d solve_estimator_dare(const Eigen::Matrix3d& A, const Eigen::MatrixXd& C, const Eigen::Matrix3d& Q,
                                      const Eigen::MatrixXd& R) {
-  constexpr int kMaxDoublings = 60;  // each squares the error: 60 is far beyond any detectable axis
+  constexpr int kMaxDoublings = 60;  // each squares the error; a detectable axis needs far fewer than 60
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d a = A.transpose();
   const Eigen::MatrixXd weight = square_inverse(R),
-                        weighted = C.transpose() * weight;  // named: one product compiles faster
+                        weighted = C.transpose() * weight;  // a variable, because one product compiles faster
   Eigen::Matrix3d g = weighted * C;
   Eigen::Matrix3d h = Q;
   for (int k = 0; k < kMaxDoublings; ++k) {

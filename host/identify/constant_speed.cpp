@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSmoothing_s = 0.1;
 
-/// Speed smoothed over 2*half samples about each sample, and how far sensor resolution or noise can move it.
+/// Speed smoothed over 2*half samples about each sample, and its uncertainty due to sensor resolution or noise.
 struct SmoothedSpeed {
   std::vector<double> value;  ///< value[k] belongs to sample k + half
   std::size_t half = 1;
@@ -43,7 +43,8 @@ SmoothedSpeed smooth(const Record& record, const sim::DataSheet& data) {
   return smoothed;
 }
 
-/// For each start: whether the speed stays within tolerance over the following `length` values (sliding extremes).
+/// For each start: whether the speed stays within the tolerance over the next `length` values (sliding minimum and
+/// maximum).
 std::vector<bool> steady_starts(const SmoothedSpeed& speed, std::size_t length, double tolerance) {
   std::vector<bool> steady(speed.value.size() >= length ? speed.value.size() - length + 1 : 0);
   std::deque<std::size_t> highs, lows;
@@ -79,7 +80,7 @@ double mean_speed(const Record& record, const sim::DataSheet& data, std::size_t 
 std::vector<ConstantSpeed> find_constant_speeds(const Record& record, const sim::DataSheet& data,
                                                 const ConstantSpeedOptions& options) {
   const SmoothedSpeed speed = smooth(record, data);
-  // A window of `length` smoothed values has looked at kSmoothing_s more of the record than it is long.
+  // A window of `length` smoothed values depends on a part of the record that is longer by kSmoothing_s.
   const double length_s = std::max(options.shortest_s - kSmoothing_s, 0.05);
   const auto length = static_cast<std::size_t>(length_s / record.sample_period_s);
   const std::vector<bool> steady = steady_starts(speed, std::max<std::size_t>(2, length), options.tolerance);

@@ -1,4 +1,4 @@
-// Intervals of constant speed in a record, where friction shows without acceleration.
+// Intervals of constant speed in a record, where friction can be measured without acceleration.
 #pragma once
 
 #include <vector>
@@ -16,12 +16,12 @@ struct ConstantSpeed {
 };
 
 struct ConstantSpeedOptions {
-  double settle_s = 0.3;    ///< dropped at the start, as in the paper; at most half of the interval
-  double shortest_s = 0.3;  ///< shortest duration of a constant speed, including the dropped part
-  double tolerance = 0.03;  ///< relative change of the smoothed speed that still counts as constant
+  double settle_s = 0.3;    ///< removed at the start, as in the paper; at most half of the interval
+  double shortest_s = 0.3;  ///< shortest duration of a constant speed, including settle_s
+  double tolerance = 0.03;  ///< largest relative change of the smoothed speed
 };
 
-/// Finds every interval, in order of time, from the speed smoothed over 0.1 s (from the encoder if there is one).
+/// Finds all intervals, in order of time, from the speed smoothed over 0.1 s (by the encoder if there is one).
 std::vector<ConstantSpeed> find_constant_speeds(const Record& record, const sim::DataSheet& data,
                                                 const ConstantSpeedOptions& options = {});
 

@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-constexpr int kChanges = 5;  // a dead time of three samples and the end of a current loop's answer
+constexpr int kChanges = 5;  // a dead time of three samples and the step response of a current loop
 
 }  // namespace
 
@@ -45,12 +45,12 @@ std::optional<AmplifierGain> amplifier_gain(const std::vector<Record>& records, 
   }
   const Regression found = regression.solve();
   const double norm = squares - sum * sum / static_cast<double>(std::max<std::size_t>(count, 1));
-  // Few blocks have steps of the command; their scatter alone may understate the variance that white noise gives.
+  // Only few blocks contain steps of the command, so their scatter may be less than the variance of white noise.
   const double white =
       std::pow(found.relative_residual, 2) * squares / static_cast<double>(count) * moment.inverse()(0, 0);
   const double gain = found.parameters(0);
   const double half = found.t_quantile * std::sqrt(std::max(found.covariance(0, 0), white));
-  // The residual over the current about its mean: an offset explains nothing.
+  // The residual relative to the current about its mean, because an offset explains nothing.
   const double left = found.relative_residual * std::sqrt(squares / norm);
   if (!(norm > 0.0) || !(left < kFollows) || !(gain > 0.0) || !std::isfinite(half)) return {};
   return AmplifierGain{{gain, {gain - half, gain + half}}, found.parameters(1), left};
@@ -67,7 +67,7 @@ GainCheck check_gain(const Estimate& bare, const Estimate& loaded, double added,
   GainCheck check{added, grown, {}, {}, assumed, assumed * added / grown};
   const auto factor_at = [&](double one) { return added / one; };
   check.factor = {factor_at(grown), {factor_at(grown + half), factor_at(grown - half)}};
-  // J = added * bare / (loaded - bare): both estimates move it.
+  // J = added * bare / (loaded - bare): both estimates affect it.
   const double value = added * bare.value / grown;
   const double spread =
       added / (grown * grown) * std::hypot(loaded.value * bare.half_width(), bare.value * loaded.half_width());

@@ -27,13 +27,14 @@ namespace {
 constexpr const char *kSamplesKey = "effort_timing_samples", *kDeviationKey = "effort_timing_deviation",
                      *kEstimatedKey = "effort_timing_estimated";
 
-constexpr int kTravelTerms = 8;  // as beside inertia and friction elsewhere
+constexpr int kTravelTerms = 8;  // as in least_squares_beside_travel()
 constexpr int kTerms = 7 + kTravelTerms;
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
-/// The record's motion on the samples that slide for sure, whatever the drive's usual dead band.
+/// The motion of the record in the samples in which the axis certainly slides. It does not use the drive's usual dead
+/// band.
 std::optional<Motion> sliding_motion(const Record& record, const sim::DataSheet& data) {
-  constexpr double kSlowShare = 0.01;  // of the high speeds: below, the direction of friction is not certain
+  constexpr double kSlowShare = 0.01;  // of the high speeds; below it, the direction of friction is uncertain
   try {
     MotionOptions options;
     options.cutoff_Hz = choose_cutoff({record}, data);
@@ -47,13 +48,13 @@ std::optional<Motion> sliding_motion(const Record& record, const sim::DataSheet&
   }
 }
 
-/// The terms of one record at the rows that count; the last one is left for the instant.
+/// The terms of one record at the rows in use; the last term is reserved for the time offset.
 std::vector<Terms> terms_of(const Motion& motion) {
   const auto [low, high] = std::ranges::minmax(motion.travel);
   const double length = std::max(high - low, 1e-300);
   double top = 1e-300;
   for (const double speed : motion.speed) top = std::max(top, std::abs(speed));
-  constexpr double kLowSpeed = 0.1;  // of the top speed: where friction may rise towards rest
+  constexpr double kLowSpeed = 0.1;  // of the top speed; below it, friction may rise towards standstill
   std::vector<Terms> rows;
   for (std::size_t k = 0; k < motion.speed.size(); ++k) {
     if (!motion.counts[k]) continue;
@@ -68,20 +69,22 @@ std::vector<Terms> terms_of(const Motion& motion) {
   return rows;
 }
 
-/// Correction of the time at which the effort acts, with its variance; empty if the record does not determine it.
+/// Correction of the time at which the torque or force acts, with its variance; empty if the record does not determine
+/// it.
 struct Step {
   double samples, variance;
 };
 std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, const std::vector<double>& effort) {
   BlockedRegression<kTerms> regression(rows_per_block(terms.size(), 1.0 / motion.sample_rate_Hz));
-  // Terms that a record lacks (a direction, the position) stay at zero instead of making the equations singular.
+  // Terms that a record cannot determine (a direction, the position) become zero and do not make the equations
+  // singular.
   constexpr double kNegligible = 1e-6;
   for (int term = 0; term < kTerms; ++term) regression.add(kNegligible * Terms::Unit(term), 0.0);
   std::size_t row = 0;
   double squares = 0.0, slope_squares = 0.0;
   for (std::size_t k = 0; k < motion.counts.size(); ++k) {
     if (!motion.counts[k]) continue;
-    // effort - samples * d effort/d row = what the motion needs
+    // effort - samples * d effort/d row = torque or force that the motion needs
     const double slope = 0.5 * (effort[std::min(k + 1, effort.size() - 1)] - effort[k - std::min<std::size_t>(k, 1)]);
     terms[row](kTerms - 1) = slope;
     regression.add(terms[row++], effort[k]);
@@ -91,8 +94,8 @@ std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, con
   const Regression found = regression.solve();
   const double variance = found.covariance(kTerms - 1, kTerms - 1);
   if (!std::isfinite(found.parameters(kTerms - 1)) || !(variance > 0.0) || !std::isfinite(variance)) return {};
-  // On a machine with a missing effect the residual is more than noise and may be correlated with the slope of the
-  // torque; the correlation is assumed to be as large as the residual's share.
+  // If an effect is missing, the residual is larger than noise and may be correlated with the slope of the torque. The
+  // correlation is assumed to be as large as the relative residual.
   const double misled = found.relative_residual * found.relative_residual * std::sqrt(squares / slope_squares);
   return Step{found.parameters(kTerms - 1), variance + misled * misled};
 }
@@ -103,7 +106,7 @@ void write_timing(Record& record, const EffortTiming& timing) {
   record.header[kEstimatedKey] = "1";
 }
 
-/// The true motion of the axis if the encoder has an error.
+/// Corrects the motion for the encoder error of the drive.
 void take_off_encoder_error(const sim::Drive& drive, Motion& motion) {
   if (drive.encoder_error.empty()) return;
   std::vector<double> correction(motion.travel.size());
@@ -120,7 +123,7 @@ void take_off_encoder_error(const sim::Drive& drive, Motion& motion) {
   }
 }
 
-/// Torque or force of the effects other than inertia and friction, low-passed like the motion; empty if there are none.
+/// Torque or force of the effects other than inertia and friction, filtered like the motion; empty if there are none.
 std::vector<double> further_effort(const sim::DriveDescription& model, const Motion& motion) {
   sim::DriveDescription base = model;
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
@@ -143,7 +146,7 @@ std::optional<EffortTiming> found_timing(const Record& record, const sim::DriveD
   const auto take_off = [&](std::vector<double>& effort) {
     for (std::size_t k = 0; k < further.size(); ++k) effort[k] -= further[k];
   };
-  Record current;  // what the effort needs, so that only it is prepared again
+  Record current;  // only the channels that the torque or force needs
   current.path = record.path;
   current.sample_period_s = record.sample_period_s;
   current.i_A = record.i_A;
@@ -211,8 +214,8 @@ std::vector<double> acting_current(const Record& record) {
   const auto last = static_cast<std::ptrdiff_t>(record.i_A.size()) - 1;
   const auto whole = static_cast<std::ptrdiff_t>(std::floor(early));
   const double p = early - static_cast<double>(whole);
-  // Lagrange's cubic through four rows, which keeps its size up to the filters' cut-off: halfway between two rows a
-  // straight line would lose 5 % at a tenth of the sampling rate, this 0.4 %.
+  // Lagrange's cubic through four rows, whose gain stays near 1 up to the filters' cut-off. Halfway between two rows,
+  // it loses 0.4 % of the amplitude at a tenth of the sampling rate; a straight line would lose 5 %.
   const std::array<double, 4> weights{-p * (p - 1.0) * (p - 2.0) / 6.0, (p + 1.0) * (p - 1.0) * (p - 2.0) / 2.0,
                                       -(p + 1.0) * p * (p - 2.0) / 2.0, (p + 1.0) * p * (p - 1.0) / 6.0};
   std::vector<double> current(record.i_A.size(), 0.0);

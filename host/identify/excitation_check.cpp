@@ -22,14 +22,14 @@ double percentile_of_magnitude(std::vector<double> values, double share) {
   return quantile(std::move(values), share);
 }
 
-/// The largest of what was recorded to drive the axis.
+/// The largest command, or the largest current if there is no command.
 std::string largest_seen(const ExcitationSummary& summary) {
   return summary.peak_command_V > 0.0 || summary.peak_current_A == 0.0
              ? fmt::format("commands up to {:.2g} V", summary.peak_command_V)
              : fmt::format("currents up to {:.2g} A", summary.peak_current_A);
 }
 
-/// The recommended excitation, in volts if the command is known.
+/// The recommended excitation, in volts if the command was logged.
 std::string better_excitation(const ExcitationSummary& summary, const sim::DataSheet& data) {
   std::string amplitude = "larger steps";
   if (summary.peak_command_V == 0.0 && summary.peak_current_A > 0.0)
@@ -69,7 +69,7 @@ ExcitationSummary summarise_excitation(const std::vector<Record>& records, const
     for (const double i : record.i_A) summary.peak_current_A = std::max(summary.peak_current_A, std::abs(i));
   }
   summary.peak_effort = percentile_of_magnitude(std::move(efforts), 0.99);
-  // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can imitate in 0.1 s.
+  // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can show in 0.1 s.
   const double fake = data.encoder_resolution / data.lead / kLeastSliding_s * 10.0;
   summary.threshold = motions.front().deadband;
   if (!(summary.threshold > 0.0)) summary.threshold = std::max(0.01 * summary.top_speed, fake);
@@ -94,10 +94,11 @@ void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data
 
 void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data) {
   if (std::isfinite(estimate.condition_number) && estimate.inertia.ci95[1] < 0.0)
-    throw Failure(ExitCode::refused,
-                  fmt::format("the inertia comes out negative ({:.4g}): the axis accelerates against its command. The "
-                              "sign of the command or of the motion is inverted, or channels are swapped",
-                              estimate.inertia.value));
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("the estimated inertia is negative ({:.4g}): the axis accelerates against its command. The "
+                    "sign of the command or of the motion is inverted, or channels are swapped",
+                    estimate.inertia.value));
   const bool determined = std::isfinite(estimate.condition_number) && estimate.inertia.ci95[0] > 0.0;
   if (determined) return;
   throw Failure(
@@ -111,7 +112,8 @@ void require_determined(const RigidEstimate& estimate, const ExcitationSummary& 
 
 std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const ExcitationSummary& summary,
                                         const sim::DataSheet& data) {
-  // At the paper's Ku = 5 friction takes 47 % (x) and 57 % (y) of the motor's effort, at 7.5 it takes 32 % and 38 %.
+  // At Ku = 5 of the paper, friction takes 47 % (x) and 57 % (y) of the torque of the motor, at 7.5 it takes 32 % and
+  // 38 %.
   constexpr double kDominantShare = 0.4;
   constexpr double kWideInterval = 0.05;
   std::vector<std::string> warnings;

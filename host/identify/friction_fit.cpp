@@ -16,16 +16,16 @@ namespace host {
 
 namespace {
 
-/// Velocity constants are looked for from this part of the slowest speed up to this part of the top speed: the fast
-/// points (the paper's: above a quarter of the top speed) then belong to Coulomb and viscous friction alone.
+/// Range of the velocity constants: from this part of the slowest speed to this part of the top speed. So the fast
+/// points (in the paper: above a quarter of the top speed) determine Coulomb and viscous friction alone.
 constexpr double kLeastOmegaShare = 0.3;
 constexpr double kMostOmegaShare = 0.25;
 
-/// Parameters of one direction as the solver sees them. Velocity constants as logarithms: they are positive, span
-/// decades, and what the points tell of them is relative.
+/// Parameters of one direction in the solver. Velocity constants are logarithms, because they are positive, span
+/// decades, and the points determine their relative size.
 enum SideIndex : Eigen::Index { kCoulomb, kStaticRise, kLogOmega1, kLogOmega2, kSideSize };
 
-using Parameters = Eigen::VectorXd;  ///< [B, side 0 ..., side 1 ...]; side 1 absent when symmetric
+using Parameters = Eigen::VectorXd;  ///< [B, side 0 ..., side 1 ...]; without side 1 if symmetric
 
 struct Layout {
   bool symmetric = false;
@@ -68,7 +68,7 @@ struct Candidate {
   double cost = HUGE_VAL;    ///< sum of the squared weighted residuals
 };
 
-/// Speeds between which velocity constants are looked for, and the levels to start from.
+/// Range of the velocity constants, and the start values of the levels.
 struct Range {
   double slowest = HUGE_VAL, top = 0.0, level = 0.0;
 };
@@ -84,7 +84,7 @@ Range range_of(const std::vector<CurvePoint>& points) {
 }
 
 std::vector<double> weights_of(const std::vector<CurvePoint>& points, double level) {
-  // The friction law itself is not exact, so each point has an error of at least 0.1 % of the largest friction.
+  // The friction law is not exact either, so each point has an error of at least 0.1 % of the largest friction.
   std::vector<double> weights;
   for (const CurvePoint& point : points) weights.push_back(1.0 / std::hypot(point.standard_error, 1e-3 * level));
   return weights;
@@ -130,7 +130,7 @@ Candidate solve_from(const std::vector<CurvePoint>& points, const std::vector<do
   return candidate;
 }
 
-/// Best of several starts: velocity constants spread over the decades between the slowest and the top speed.
+/// The best result of several starts, with velocity constants spread over the decades between slowest and top speed.
 Candidate solve(const std::vector<CurvePoint>& points, const Layout& layout) {
   const Range range = range_of(points);
   const std::vector<double> weights = weights_of(points, range.level);
@@ -168,7 +168,7 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
                   "range of numbers; check units and scales");
   const Layout& layout = best.layout;
   const double degrees = std::max(1.0, static_cast<double>(points.size()) - static_cast<double>(layout.size()));
-  const double excess = std::max(1.0, best.cost / degrees);  // scatter beyond the points' own errors widens
+  const double excess = std::max(1.0, best.cost / degrees);  // excess scatter widens the intervals
   const RightSingular svd = right_singular(best.jacobian);
   const Eigen::VectorXd singular = svd.values.cwiseMax(1e-12 * svd.values(0));
   const Eigen::MatrixXd root = svd.vectors * singular.cwiseInverse().asDiagonal();
@@ -184,7 +184,7 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   };
   const Range range = range_of(points);
   const auto logarithmic = [&](Eigen::Index k) {
-    // The interval of an undetermined parameter is its search range.
+    // The interval of a parameter that is not determined is its search range.
     const double lowest = kLeastOmegaShare * range.slowest;
     const double value = std::exp(best.parameters(k)), half = half_of(unit(k));
     const double highest = kMostOmegaShare * range.top, reach = std::log(highest / lowest);
@@ -215,7 +215,7 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   return fit;
 }
 
-/// Speeds of one direction that differ by a tenth or more.
+/// Number of speeds in one direction that differ by a tenth or more.
 std::size_t distinct_speeds(const std::vector<CurvePoint>& points, bool forward) {
   std::set<double> logarithms;
   for (const CurvePoint& point : points) {
@@ -243,8 +243,8 @@ void require_speeds(const std::vector<CurvePoint>& points) {
   }
 }
 
-/// Four values per direction and the common slope: with fewer than five speeds per direction the Stribeck part is
-/// undetermined.
+/// Each direction has four values and shares the slope, so fewer than five speeds per direction cannot determine the
+/// Stribeck part.
 bool can_tell_stribeck(const std::vector<CurvePoint>& points) {
   constexpr std::size_t kFewest = 5;
   const Range range = range_of(points);

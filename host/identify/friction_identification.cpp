@@ -15,14 +15,14 @@ namespace host {
 
 namespace {
 
-/// The design's observer, with a variance for every sensor of the records: a drive whose data sheet does not give the
-/// encoder's resolution is observed at the smallest step that its record shows.
+/// The observer of the design, with a variance for every sensor of the records. If the data sheet gives no encoder
+/// resolution, the smallest step in the record is used.
 AxisDesign observer_for(const std::vector<Record>& records, const sim::DriveDescription& model) {
   sim::DriveDescription seen = model;
   if (!std::ranges::all_of(records, &Record::has_speed)) seen.data.tach_noise_variance.reset();
   DesignOptions options;
   if (!(model.data.encoder_resolution > 0.0)) {
-    constexpr double kUnknown = 1e-6;  // mm or m: no position at all, the observer is not used then
+    constexpr double kUnknown = 1e-6;  // mm or m; without a position the observer is not used
     double step = 0.0;
     for (const Record& record : records) step = std::max(step, encoder_step(record, model.data));
     options.position_variance = (step > 0.0 ? step * step : kUnknown * kUnknown) / 12.0;
@@ -47,7 +47,8 @@ std::vector<CurvePoint> by_disturbance(const std::vector<FrictionPoint>& points,
   return curve;
 }
 
-/// One direction's values as the model file has them: backward ones negative.
+/// Writes the values of one direction in the form of the model file, in which those of the backward direction are
+/// negative.
 void put(sim::EffectEntry& entry, const std::string& id, const Estimate& estimate, bool forward, bool has_interval) {
   const double sign = forward ? 1.0 : -1.0;
   entry.parameters[id] = sign * estimate.value;
@@ -115,7 +116,7 @@ void cross_check(FrictionIdentification& result) {
   result.warnings.push_back(text);
 }
 
-/// A model with equal directions keeps that form; if the points contradict it, a warning says so.
+/// A model with one level for both directions keeps that form. If the points contradict it, a warning says so.
 void warn_of_unequal_directions(FrictionIdentification& result) {
   constexpr double kClearlyWorse = 2.0;
   const FrictionFit free = fit_friction(by_control_signal(result.points), false);

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Parameters with intervals, the points, and the curve at 61 speeds each way, spaced by ratio.
+/// Parameters with intervals, the points, and the curve at 61 speeds in each direction, with equal ratios.
 nlohmann::json friction_json(const FrictionIdentification& identification);
 
 }  // namespace host

@@ -8,7 +8,7 @@ namespace {
 
 double exp_or_zero(double v, double omega) { return omega > 0.0 ? std::exp(-v / omega) : 0.0; }
 
-/// Magnitude of one direction's value: `both` when the entry has it, else `per_direction`.
+/// Magnitude of a value in one direction: `both` if the entry has it, else `per_direction`.
 double magnitude(const sim::EffectEntry& entry, const char* both, const char* per_direction) {
   if (entry.has(both)) return std::abs(entry.at(both));
   return entry.has(per_direction) ? std::abs(entry.at(per_direction)) : 0.0;

@@ -11,9 +11,10 @@ namespace host {
 
 namespace {
 
-/// Average over a stretch with soft ends: the mean over `length` samples, averaged again over every start in the first
-/// and last `soft` samples with Hann weights. Sums of J dw/dt then reduce to speeds averaged over the soft ends, which
-/// the encoder knows well; a plain mean would need the speed at two instants. Whole turns of the screw stay whole.
+/// Average over an interval with soft ends: the mean over `length` samples, averaged again over every start in the
+/// first and last `soft` samples with Hann weights. Sums of J dw/dt then only need speeds averaged over the soft ends,
+/// which the encoder gives accurately; a plain mean would need the speed at two instants. Whole turns of the screw stay
+/// whole.
 class SoftMean {
  public:
   SoftMean(std::size_t begin, std::size_t end, double samples_per_turn) : begin_(begin) {
@@ -48,7 +49,7 @@ class SoftMean {
     return mean / static_cast<double>(length_);
   }
 
-  /// Mean difference from sample to sample: the difference of the soft ends over the length.
+  /// Mean change per sample: the difference of the soft ends over the length.
   double of_slope(const std::vector<double>& signal) const {
     double first = 0.0, last = 0.0;
     for (std::size_t j = 0; j < weights_.size(); ++j) {
@@ -64,19 +65,19 @@ class SoftMean {
   std::vector<double> weights_;
 };
 
-/// One record's signals by sample, as the means need them.
+/// The signals of one record from which the means are computed, one value per sample.
 struct Signals {
-  std::vector<double> effort;       ///< of the motor, held from the sample on
-  std::vector<double> travel;       ///< rad or m; empty without a position
+  std::vector<double> effort;       ///< torque or force of the motor, held from the sample on
+  std::vector<double> travel;       ///< rad or m; empty if there is no position
   std::vector<double> speed;        ///< central difference of the travel, or the tachometer
-  std::vector<double> disturbance;  ///< V; empty without a position
-  std::vector<double> jitter;       ///< speed above 10 Hz that the effort alone causes
+  std::vector<double> disturbance;  ///< V; empty if there is no position
+  std::vector<double> jitter;       ///< speed above 10 Hz caused by the torque or force alone
   double period_s = 0.0;
 };
 
-/// Integral of the effort's fast part over the inertia: the motion of the speed between encoder counts.
+/// Integral of the high-frequency torque or force over the inertia: changes of the speed between encoder counts.
 std::vector<double> speed_jitter(const std::vector<double>& effort, double inertia, double period_s) {
-  constexpr double kSlowest_Hz = 10.0;  // below, the position loop holds the speed
+  constexpr double kSlowest_Hz = 10.0;  // below it, the position loop keeps the speed constant
   const double rate_Hz = 1.0 / period_s;
   const auto slow = ZeroPhaseLowPass::butterworth(std::min(kSlowest_Hz, 0.1 * rate_Hz), rate_Hz);
   std::vector<double> speed(effort.size());
@@ -105,8 +106,8 @@ double friction_effort(const Signals& signals, const SoftMean& mean, double iner
   return mean.of(signals.effort) - inertia * mean.of_slope(signals.speed) / signals.period_s;
 }
 
-/// From the scatter of five parts of the stretch, each averaged like the whole. What the parts' ends get wrong cancels
-/// in the whole, so this errs on the large side.
+/// Standard error from the scatter of five parts of the interval, each averaged like the whole. Errors at the ends of
+/// the parts cancel in the whole, so this is rather too large.
 double standard_error(const Signals& signals, const ConstantSpeed& stretch, double inertia) {
   constexpr std::size_t kParts = 5;
   const std::size_t span = (stretch.end - stretch.begin) / kParts;
@@ -131,7 +132,7 @@ double root_mean_square(const std::vector<double>& signal, const ConstantSpeed& 
 }  // namespace
 
 bool FrictionPoint::is_steady() const {
-  constexpr double kDeviations = 2.0;  // the speed is then against the jog for 2 % of the time at most
+  constexpr double kDeviations = 2.0;  // then the speed is opposite to the jog for at most 2 % of the time
   return std::abs(speed) > kDeviations * jitter;
 }
 
@@ -143,7 +144,8 @@ std::vector<double> observe_disturbance(const Record& record, const AxisDesign& 
   const std::vector<double> effort = motor_effort(record, data);
   const double per_volt = design.axis.effort_per_volt;
 
-  // Position counts from the first sample: the observer's own resolution then does not depend on where the axis is.
+  // The position is relative to the first sample, so that the resolution of the observer does not depend on where the
+  // axis is.
   Eigen::Vector3d state = Eigen::Vector3d::Zero();
   std::vector<double> disturbance(record.size());
   for (std::size_t k = 1; k < record.size(); ++k) {

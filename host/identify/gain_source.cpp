@@ -1,4 +1,4 @@
-// Identification with a gain that the records show, instead of the data sheet's.
+// Identification with a gain from the records instead of that of the data sheet.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -33,7 +33,7 @@ void require_same_rate(const std::vector<Record>& records) {
 }
 
 void require_enough(const std::vector<Record>& records) {
-  constexpr double kLowestRate_Hz = 50.0;  // five samples in a period of the lowest cut-off of the filters, 10 Hz
+  constexpr double kLowestRate_Hz = 50.0;  // five samples per period of the filters' lowest cut-off, 10 Hz
   constexpr double kShortest_s = 0.2;      // twice the required sliding in each direction
   for (const Record& record : records) {
     require_rate(record, kLowestRate_Hz, "see the axis accelerate");
@@ -51,7 +51,7 @@ void set_entry(sim::DriveDescription& model, const std::string& kind, const std:
   model.effects.push_back(std::move(entry));
 }
 
-/// One level for both directions from the two, as the drive's description has it.
+/// One level for both directions from two levels, in the form of the drive's description.
 Estimate common_level(const Estimate& positive, const Estimate& negative) {
   const double value = 0.5 * (positive.value - negative.value);
   const double half = 0.5 * std::hypot(positive.half_width(), negative.half_width());
@@ -76,8 +76,8 @@ sim::DriveDescription model_from(const sim::DriveDescription& drive, const Rigid
   return model;
 }
 
-/// Corrects values that no model file may hold, with a warning. If one level has the wrong sign, an offset exceeds the
-/// friction: half the difference is friction.
+/// Corrects values that a model file must not contain, with a warning. If one Coulomb level has the wrong sign, an
+/// offset is larger than the friction, and half of the difference between the levels is the friction.
 void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& estimate,
                          std::vector<std::string>& warnings) {
   for (sim::EffectEntry& entry : model.effects) {
@@ -99,8 +99,8 @@ void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& esti
 
 void warn_of_tachometer(Identification& result, bool corrected) {
   if (!result.tachometer) return;
-  constexpr double kGainOff = 0.002;   // moves B by several per cent
-  constexpr double kOffsetOff = 0.05;  // rad/s: a tenth of the paper's dead band
+  constexpr double kGainOff = 0.002;   // changes B by several per cent
+  constexpr double kOffsetOff = 0.05;  // rad/s; a tenth of the paper's dead band
   const Estimate &gain = result.tachometer->gain, &offset = result.tachometer->offset;
   const bool gain_off = std::abs(gain.value - 1.0) > std::max(kGainOff, gain.half_width());
   const bool offset_off = result.model.data.kind == sim::DriveKind::rotary &&
@@ -136,9 +136,9 @@ std::string dropped_effects(const sim::DriveDescription& drive) {
   return kinds;
 }
 
-/// Widens the intervals of an estimate with inverse models, `estimator`, by the uncertainty of the times at which the
-/// efforts act. If times and parameters are estimated together, the covariance of the parameters is that with known
-/// times plus, for each time, its variance times the square of the parameters' sensitivity to it.
+/// Widens the intervals of an estimate by inverse models, `estimator`, for the uncertainty of the time offsets of the
+/// torque or force. If offsets and parameters are estimated together, the covariance of the parameters is that for
+/// known offsets plus, for each offset, its variance times the square of the sensitivity of the parameters to it.
 template <typename Estimator>
 void widen_by_timing(const std::vector<Record>& records, const std::vector<Motion>& motions, Estimator estimator,
                      RigidEstimate& estimate) {
@@ -152,7 +152,7 @@ void widen_by_timing(const std::vector<Record>& records, const std::vector<Motio
     const double deviation = timing.deviation;
     if (!(deviation > 0.0) || std::ranges::find(widened, timing) != widened.end()) continue;
     widened.push_back(timing);
-    std::vector<Motion> slopes = motions;  // the effort's change per sample, of the records that share this time
+    std::vector<Motion> slopes = motions;  // change per sample, in the records that share this offset
     for (std::size_t other = 0; other < slopes.size(); ++other)
       slopes[other].effort = effort_timing_of(records[other]) == timing
                                  ? central_difference(motions[other].effort, 1.0)
@@ -165,7 +165,7 @@ void widen_by_timing(const std::vector<Record>& records, const std::vector<Motio
   }
 }
 
-/// The motions of the records by one of the channels.
+/// The motions of the records, computed from one of the channels.
 struct Attempt {
   MotionOptions options;
   std::vector<Motion> motions;
@@ -176,12 +176,12 @@ struct Attempt {
   bool beside_travel = false;
 };
 
-/// The estimate together with a curve over the travel, if that curve explains most of the residual of inertia and
-/// friction and the inertia remains identifiable (not in a steady oscillation, whose acceleration is proportional to
-/// the position).
+/// The estimate with a curve over the travel, if that curve explains most of the residual of inertia and friction and
+/// the inertia can still be identified. It cannot in a steady oscillation, in which the acceleration is proportional to
+/// the position.
 std::optional<RigidEstimate> estimate_beside_travel(const Attempt& made) {
-  constexpr double kMostOfIt = 0.5;   // of the norm: three quarters of the square
-  constexpr double kKnown = 0.3;      // of the inertia, half its interval
+  constexpr double kMostOfIt = 0.5;   // of the norm, so three quarters of the square
+  constexpr double kKnown = 0.3;      // half of its interval, relative to the inertia
   constexpr double kSliding_s = 3.0;  // 30 blocks of 0.1 s for the twelve unknowns
   if (made.excitation.forward_s + made.excitation.backward_s < kSliding_s) return {};
   const RigidEstimate found = least_squares_beside_travel(made.motions);

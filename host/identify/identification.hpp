@@ -13,15 +13,15 @@
 namespace host {
 
 enum class IdentificationMethod {
-  simple_ls,    ///< eqs. (20)-(25): friction left out
-  unbiased_ls,  ///< eqs. (28)-(40): Coulomb friction estimated too. Encoder-only drives: all samples of the inverse
+  simple_ls,    ///< eqs. (20)-(25), without Coulomb friction
+  unbiased_ls,  ///< eqs. (28)-(40), with Coulomb friction. Drives with an encoder only: all samples of the inverse
                 ///< model
-  sliding_ls,   ///< inverse model on the samples that slide for sure: free of the bias from tachometer noise
+  sliding_ls,   ///< inverse model on certainly sliding samples; not biased by tachometer noise
 };
 
 std::string_view method_name(IdentificationMethod method);  ///< "ls", "unbiased-ls", "sliding-ls"
 
-/// Default method: sliding_ls with a tachometer, unbiased_ls with an encoder only.
+/// The default method: sliding_ls with a tachometer, unbiased_ls with an encoder only.
 IdentificationMethod default_method(const std::vector<Record>& records);
 
 /// Finds a method by its name; an empty name gives the default. Throws Failure(usage) with the known names.
@@ -31,32 +31,32 @@ struct Identification {
   IdentificationMethod method{};
   sim::DriveDescription model;  ///< data sheet plus inertia, viscous, coulomb with intervals and origin
   RigidEstimate estimate;
-  double relative_error = 0.0;  ///< of the inverse model on the same records
-  bool by_speed = false;        ///< the motion was taken from the speed channel
+  double relative_error = 0.0;  ///< relative error of the inverse model on the same records
+  bool by_speed = false;        ///< the motion comes from the speed channel
   bool beside_travel = false;   ///< a curve along the travel absorbed effects that depend on position
-  double cutoff_Hz = 0.0;       ///< of the zero-phase filter
+  double cutoff_Hz = 0.0;       ///< cut-off of the zero-phase filter
   std::size_t decimation = 1;
   ExcitationSummary excitation;
   std::optional<TachometerCalibration> tachometer;
-  std::optional<double> tach_noise_variance;  ///< measured at standstill (46)
-  std::optional<AmplifierGain> amplifier;     ///< where all records have command and current
-  std::optional<GainCheck> gain_check;        ///< by identify_with_gain()
+  std::optional<double> tach_noise_variance;  ///< tachometer noise measured at standstill (46)
+  std::optional<AmplifierGain> amplifier;     ///< if all records have command and current
+  std::optional<GainCheck> gain_check;        ///< set by identify_with_gain()
   std::vector<std::string> warnings;
 };
 
-/// Identifies from one or several (training) records of the same drive and sampling period. `drive` gives the data
-/// sheet; a base effect that it has in the one-level form keeps that form, other effects are not taken over (a warning
-/// says so). sliding_ls corrects the tachometer by the encoder first, and takes the motion from it where the position
-/// differentiates clearly worse; the paper's methods take the records as they are. If a curve over the travel explains
-/// most of the residual of inertia and friction (gravity on an arm, a spring), the filtered methods estimate together
-/// with it. The model can always be read again: an impossible friction value is set to its bound, and two levels of
-/// which one would drive the axis are replaced by one level for both directions. Warnings say so; the estimate is not
-/// changed. Throws Failure(refused) for insufficient excitation, Failure(bad_input) for records that do not fit the
-/// drive.
+/// Identifies from one or several training records of the same drive and sampling period. `drive` gives the data sheet.
+/// A base effect that it has in the one-level form keeps that form; other effects are left out, with a warning.
+/// sliding_ls first corrects the tachometer by the encoder, and takes the motion from the tachometer if the
+/// differentiated position is clearly worse; the paper's methods use the records as they are. If a curve over the
+/// travel explains most of the residual of inertia and friction (gravity on an arm, a spring), the filtered methods
+/// include it in the estimate. The model can always be read again: an impossible friction value is set to its bound,
+/// and two levels of which one would drive the axis are replaced by one level for both directions. Warnings say so; the
+/// estimate does not change. Throws Failure(refused) for insufficient excitation, Failure(bad_input) for records that
+/// do not fit the drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});
 
-/// Where a drive's torque per command comes from.
+/// Source of a drive's torque per command.
 enum class GainSource {
   sheet,
   current,  ///< Ka from command and current of the records
@@ -66,16 +66,16 @@ enum class GainSource {
 GainSource gain_source_named(std::string_view name);
 
 struct AddedInertia {
-  const Measurements& loaded;  ///< the same drive with it
-  double value = 0.0;          ///< at the motor, kg m^2; of a linear drive kg; > 0
+  const Measurements& loaded;  ///< records of the same drive with the added inertia
+  double value = 0.0;          ///< added inertia at the motor, kg m^2; kg for a linear drive; > 0
 };
 
-/// Inertia at the motor of a mass on the table (kg): m (lead / 1000)^2, or m of a linear drive.
+/// Inertia at the motor of a mass on the table (kg): m (lead / 1000)^2, or m for a linear drive.
 double inertia_of_mass(double mass_kg, const sim::DataSheet& data);
 
-/// The same with the gain checked or replaced, in the model too. A current's gain changes Ka (of a linear drive N/V);
-/// that of an added inertia Ka too or, where the current gives Ka, Kt. Throws Failure(usage) if the source has no data,
-/// and what check_gain() throws.
+/// As identify_drive(), with the gain checked or replaced, also in the model. The gain from the current replaces Ka
+/// (N/V for a linear drive). The gain from an added inertia replaces Ka too, or Kt if the current gives Ka. Throws
+/// Failure(usage) if the records or options for the source are missing, and what check_gain() throws.
 Identification identify_with_gain(const Measurements& measured, const sim::DriveDescription& drive,
                                   IdentificationMethod method, const MotionOptions& options, GainSource source,
                                   const std::optional<AddedInertia>& added);

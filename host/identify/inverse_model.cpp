@@ -55,8 +55,8 @@ std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion
 
 namespace {
 
-/// A model's effort after the regression's filter. Effects that repeat along the travel may be faster than this filter,
-/// so they pass it like the measured effort; speed and acceleration have passed it already.
+/// Torque or force of a model after the regression's filter. Effects that repeat along the travel may be faster than
+/// the filter, so they pass through it like the measured torque or force. Speed and acceleration are already filtered.
 class SeenEffort {
  public:
   explicit SeenEffort(const sim::DriveDescription& model) : drive_(model) {
@@ -79,14 +79,14 @@ class SeenEffort {
 
  private:
   sim::Drive drive_;
-  std::optional<sim::Drive> smooth_;  ///< without effects that repeat along the travel; empty if there are none
+  std::optional<sim::Drive> smooth_;  ///< drive without effects that repeat along the travel; empty if it has none
 };
 
 }  // namespace
 
 namespace {
 
-/// Moves by more than sensors may show at rest: 10 counts, or speeds of one sign beyond noise.
+/// Whether the axis moves by more than sensors may show at rest: 10 counts, or speeds of one sign above the noise.
 bool has_moved(const Record& record, const sim::DataSheet& data) {
   constexpr double kCounts = 10.0, kDeviations = 5.0;
   if (record.has_position()) {
@@ -107,7 +107,7 @@ double relative_error(const sim::DriveDescription& model, const Record& record, 
 
 double relative_error(const sim::DriveDescription& model, const std::vector<Record>& records,
                       const MotionOptions& options) {
-  rigid_axis(model);  // says what is wrong where there is no inertia
+  rigid_axis(model);  // throws if there is no inertia
   const SeenEffort modelled_effort(model);
   MotionOptions settled = options;
   if (!settled.cutoff_Hz) settled.cutoff_Hz = choose_cutoff(records, model.data);
@@ -125,7 +125,7 @@ double relative_error(const sim::DriveDescription& model, const std::vector<Reco
   if (!(total > 0.0) && !options.deadband &&
       std::ranges::any_of(records, [&](const Record& one) { return has_moved(one, model.data); })) {
     MotionOptions all = options;
-    all.deadband = 0.0;  // too slow and short for any: every sample counts
+    all.deadband = 0.0;  // the motion is too slow or short for a dead band; uses every sample
     return relative_error(model, records, all);
   }
   if (!(total > 0.0)) {

@@ -9,8 +9,8 @@
 namespace host {
 
 double student_t_95(double degrees) {
-  // Cornish-Fisher expansion about the normal quantile; Abramowitz & Stegun 26.7.5. Below 3 degrees it is too short:
-  // there the exact values (26.7 table) stand.
+  // Cornish-Fisher expansion about the normal quantile; Abramowitz & Stegun 26.7.5. It has too few terms below 3
+  // degrees of freedom, so exact values (26.7 table) are used there.
   if (degrees < 1.5) return 12.7062;
   if (degrees < 2.5) return 4.3027;
   constexpr double z = 1.959963984540054;

@@ -1,4 +1,4 @@
-// Linear least squares in one pass over the rows, with intervals that hold when residuals are correlated.
+// Linear least squares in one pass over the rows, with intervals that are valid for correlated residuals.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,8 @@ double student_t_95(double degrees);
 /// Result of a regression.
 struct Regression {
   Eigen::VectorXd parameters;
-  Eigen::MatrixXd covariance;      ///< of the parameters, by block sums (see BlockedRegression)
-  double condition_number = 0.0;   ///< of the regressors with columns scaled to unit length; infinite when singular
+  Eigen::MatrixXd covariance;      ///< covariance of the parameters, by block sums (see BlockedRegression)
+  double condition_number = 0.0;   ///< of the regressors with columns of unit length; infinite if singular
   double t_quantile = 0.0;         ///< half-width of a 95 % interval in standard deviations
   double relative_residual = 0.0;  ///< norm(y - Phi parameters) / norm(y)
   std::size_t rows = 0;
@@ -28,12 +28,12 @@ struct NormalEquations {
 };
 
 /// Solves the sum of the blocks for `unknowns` parameters. Covariance: sandwich estimate with the blocks as independent
-/// clusters (batch means), right for residuals of any colour and variance whose correlation is shorter than a block;
-/// intervals use Student's t with (blocks - parameters) degrees. Parameters are NaN when the equations are singular, as
-/// they are without a row.
+/// clusters (batch means). It is valid for residuals of any spectrum and variance whose correlation is shorter than a
+/// block. Intervals use Student's t with (blocks - parameters) degrees of freedom. Parameters are NaN if the equations
+/// are singular, for example if there is no row.
 Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index unknowns, std::size_t rows);
 
-/// Gathers rows into blocks. A block's score (sum of regressor times residual) follows from its own sums once the
+/// Collects rows in blocks. The score of a block (sum of regressor times residual) follows from its sums once the
 /// parameters are known, so one pass over the data gives estimate and intervals.
 template <int P>
 class BlockedRegression {
@@ -50,11 +50,11 @@ class BlockedRegression {
     if (++rows_in_block_ == rows_per_block_) end_block();
   }
 
-  /// The same for rows [begin, end), fast: `fill(k, row)` writes phi and, as the last of P + 1 numbers, y. A hundred
-  /// rows at a time stand in columns, whose inner products the processor forms several rows at once.
+  /// The same for rows [begin, end), faster: `fill(k, row)` writes phi and, as the last of P + 1 numbers, y. About a
+  /// hundred rows at a time are stored in columns, whose inner products the processor can vectorise.
   template <typename Fill>
   void add_rows(std::size_t begin, std::size_t end, const Fill& fill) {
-    constexpr std::size_t kRows = 128;  // with P = 4: 5 kB, well inside the first cache
+    constexpr std::size_t kRows = 128;  // 5 kB for P = 4, which fits in the L1 cache
     Eigen::Matrix<double, kRows, P + 1> rows;
     while (begin < end) {
       const std::size_t count = std::min({kRows, end - begin, rows_per_block_ - rows_in_block_});
@@ -76,7 +76,7 @@ class BlockedRegression {
     }
   }
 
-  /// Call between records: rows on both sides are not consecutive.
+  /// Must be called between records, because their rows are not consecutive.
   void end_block() {
     if (rows_in_block_ == 0) return;
     blocks_.push_back({moment_, projection_, square_});
@@ -101,8 +101,8 @@ class BlockedRegression {
   std::vector<NormalEquations> blocks_;
 };
 
-/// Rows in a block for this many rows at a time: at least 0.1 s, at most a fiftieth of the data, so that blocks outlast
-/// the residual's correlation and are enough in number for a variance.
+/// Number of rows per block, for this many rows in total: at least 0.1 s, so that a block is longer than the
+/// correlation of the residual; at most a fiftieth of the data, so that there are enough blocks for a variance.
 std::size_t rows_per_block(std::size_t rows, double row_period_s);
 
 }  // namespace host

@@ -31,7 +31,7 @@ RigidAxis rigid_axis(const sim::DriveDescription& model) {
 }
 
 SampledAxis sample_axis(const RigidAxis& axis, double sample_period_s) {
-  // The exponential of [Ac Bc; 0 0]*Ts holds Ad and Bd side by side and needs no special case at pw = 0.
+  // The exponential of [Ac Bc; 0 0]*Ts contains Ad and Bd side by side, without a special case at pw = 0.
   Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
   held(0, 1) = axis.lead;
   held(1, 1) = axis.pole();

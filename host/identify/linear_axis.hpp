@@ -1,4 +1,4 @@
-// The rigid axis without friction, continuous and sampled: basis of every design and estimate.
+// The rigid axis without Coulomb friction, continuous and sampled: basis of every design and estimate.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,8 @@ struct RigidAxis {
   double pole() const { return -viscous / inertia; }         ///< pw of eq. (3), 1/s
 };
 
-/// Reads J and B from the model's `inertia` and `viscous` effects. Throws Failure(bad_input) when inertia is absent or
-/// not positive, or when the drive has no torque or force constant; a model without `viscous` has B = 0.
+/// Takes J and B from the model's `inertia` and `viscous` effects. Throws Failure(bad_input) if the inertia is absent
+/// or not positive, or if the drive has no torque or force constant. A model without `viscous` has B = 0.
 RigidAxis rigid_axis(const sim::DriveDescription& model);
 
 /// Eq. (7): x(k+1), w(k+1) from x(k), w(k) and a command held over the period.
@@ -33,7 +33,7 @@ SampledAxis sample_axis(const RigidAxis& axis, double sample_period_s);
 struct AugmentedAxis {
   Eigen::Matrix3d A;
   Eigen::Vector3d B;
-  Eigen::Matrix<double, 3, 2> W;               ///< of the process noise [u~, wd]
+  Eigen::Matrix<double, 3, 2> W;               ///< input matrix of the process noise [u~, wd]
   Eigen::Matrix<double, Eigen::Dynamic, 3> C;  ///< 2x3 with a tachometer, 1x3 with the encoder only
 };
 AugmentedAxis augment_axis(const SampledAxis& axis, bool has_tachometer);

@@ -17,7 +17,7 @@ namespace host {
 namespace {
 
 constexpr double kPaperDeadband_rad_s = 0.5;  // p. 1499
-constexpr double kDeadbandShare = 0.1;        ///< of the top speed, for records slower than the paper's
+constexpr double kDeadbandShare = 0.1;        ///< of the top speed, for records that are slower than the paper's
 constexpr double kHighestCutoff_Hz = 100.0;
 constexpr double kLowestCutoff_Hz = 10.0;
 
@@ -32,7 +32,7 @@ void trim(std::vector<double>& signal, std::size_t margin) {
   signal.erase(signal.begin(), signal.begin() + static_cast<std::ptrdiff_t>(margin));
 }
 
-/// The paper's dead band, or a tenth of the top speed if that is less, because a slow axis slides too. Not below the
+/// The paper's dead band, or a tenth of the top speed if that is less, because a slow axis slides too. At least the
 /// speed that noise and the encoder's last digit may show at standstill.
 double usual_deadband(const std::vector<double>& speed, const sim::DataSheet& data, double cutoff_Hz, double rate_Hz) {
   if (data.kind == sim::DriveKind::linear) return 0.0;
@@ -46,9 +46,9 @@ double usual_deadband(const std::vector<double>& speed, const sim::DataSheet& da
   return std::min(kPaperDeadband_rad_s, std::max({kDeadbandShare * *top, noise, counts}));
 }
 
-/// Marks the samples whose speed keeps its sign and stays beyond the dead band for `reach` samples on both sides.
+/// Marks the samples whose speed keeps its sign and stays above the dead band for `reach` samples on both sides.
 std::vector<bool> slides(const std::vector<double>& speed, double deadband, std::size_t reach, std::size_t stride) {
-  std::vector<std::size_t> run(speed.size());  // samples of sliding up to and including this one
+  std::vector<std::size_t> run(speed.size());  // number of sliding samples up to and including this one
   for (std::size_t k = 0; k < speed.size(); ++k) {
     const bool same = k > 0 && speed[k] * speed[k - 1] > 0.0;
     run[k] = std::abs(speed[k]) > deadband ? (same ? run[k - 1] : 0) + 1 : 0;
@@ -60,7 +60,8 @@ std::vector<bool> slides(const std::vector<double>& speed, double deadband, std:
   return counts;
 }
 
-/// Lag of the speed channel behind the position, in samples: a driver computes it from past positions.
+/// Lag of the speed channel behind the position in samples. It arises because a driver computes the speed from past
+/// positions.
 std::size_t lag_of(const std::vector<double>& speed, const std::vector<double>& by_position, double period_s) {
   constexpr double kMost_s = 0.02;
   const auto most = std::min(static_cast<std::size_t>(kMost_s / period_s), speed.size() / 4);
@@ -121,7 +122,7 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
 
 DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool sliding_only,
                                  const sim::Drive* command_path) {
-  constexpr double kHold = 0.5;  // a command is held for a sample: on average it was sent half a sample ago
+  constexpr double kHold = 0.5;  // samples; mean age of a command that is held for a sample
   DeliveredEffort delivered;
   double late = sliding_only || record.u_V.empty() ? kHold : 0.0;  // samples
   if (command_path == nullptr || command_path->command.empty() || record.u_V.empty()) {
@@ -138,7 +139,8 @@ DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& dat
   std::vector<double>& effort = delivered.effort;
   if (command_path != nullptr && !record.u_V.empty()) {
     const double delay_s = command_path->delay_s + command_path->current_lag_s;  // a short lag acts as a delay
-    // A model with a command path implies a held command; without one, published methods treat both as simultaneous.
+    // A model with a command path implies that the command is held. Without one, command and motion are simultaneous,
+    // as in published methods.
     if (delay_s > 0.0) late = delay_s / record.sample_period_s + kHold;
   }
   if (late > 0.0) {
@@ -250,7 +252,7 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
     motion.counts = slides(motion.speed, motion.deadband, reach, motion.decimation);
   } else {
     motion.counts.assign((motion.speed.size() + motion.decimation - 1) / motion.decimation, true);
-    // Excludes samples that the filter mixes with commands from before the record.
+    // Excludes samples in which the filter includes commands from before the record.
     const std::size_t first = delivered.unknown_rows > 0 ? delivered.unknown_rows + reach : 0;
     for (std::size_t k = 0; k < motion.counts.size() && k * motion.decimation + kMotionMargin < first; ++k)
       motion.counts[k] = false;

@@ -34,7 +34,7 @@ std::optional<sim::DriveDescription> paper_drive(std::string_view name) {
   drive.name = std::string(name);
   drive.data.amplifier_gain_A_per_V = table.amplifier_gain_A_per_V;
   drive.data.torque_constant_Nm_per_A = 0.4769;
-  drive.data.lead = 10.0 / (2.0 * std::numbers::pi);  // pitch 10 mm; the printed 1.5915 is its rounding
+  drive.data.lead = 10.0 / (2.0 * std::numbers::pi);  // pitch 10 mm; printed as 1.5915
   drive.data.sample_period_s = 0.001;
   drive.data.dac_resolution_V = 20.0 / 65536.0;
   drive.data.dac_limit_V = 10.0;

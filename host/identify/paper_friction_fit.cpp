@@ -15,9 +15,9 @@ constexpr double kFastShare = 0.25;       // 15.7 of 62.8 rad/s
 constexpr double kGridPointShare = 0.01;  // N1 = 4: 0.628 of 62.8 rad/s
 constexpr double kGridReachShare = 10.0 / 62.832;
 constexpr int kGridSteps = 100;
-constexpr double kSpeedTolerance = 0.95;  // a measured speed lies a little off the commanded one
+constexpr double kSpeedTolerance = 0.95;  // a measured speed differs a little from the commanded one
 
-/// Magnitudes of one direction, ascending by speed, one point a speed.
+/// Magnitudes in one direction, by ascending speed, one point per speed.
 std::vector<CurvePoint> one_direction(const std::vector<CurvePoint>& points, bool forward) {
   std::vector<CurvePoint> side;
   for (const CurvePoint& point : points) {

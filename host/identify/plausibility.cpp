@@ -25,17 +25,17 @@ double half_width(const Interval& interval) { return 0.5 * (interval[1] - interv
 
 bool is_inside(double value, const sim::ParameterInfo& info) { return value >= info.lower && value <= info.upper; }
 
-/// Parameters whose sign is free: components of a phase, offsets.
+/// Parameters of either sign: components of a phase, offsets.
 bool has_either_sign(const sim::ParameterInfo& info) { return info.lower < 0.0 && info.upper > 0.0; }
 
-/// A value on a bound of the fit is no estimate. A bound at zero is allowed: the effect is absent.
+/// A value on a bound of the fit is not an estimate. A bound at zero is allowed, because the effect is then absent.
 bool is_on_bound(double value, const sim::ParameterInfo& info) {
   constexpr double kOn = 1e-3;
   const auto on = [value](double bound) { return bound != 0.0 && std::abs(value - bound) <= kOn * std::abs(bound); };
   return on(info.lower) || on(info.upper);
 }
 
-/// Meaning of a forbidden sign, if any.
+/// The meaning of a forbidden sign; may be empty.
 std::string_view meaning_of(const sim::EffectInfo& effect, const sim::ParameterInfo& info, double value) {
   if (effect.kind == "inertia" && value <= 0.0)
     return "no mass is negative: the sign of a channel is inverted, or channels are swapped";
@@ -103,12 +103,12 @@ class Examiner {
       const double reach = std::hypot(half_width(*cosine), half_width(*sine));
       if (reach > amplitude)
         doubt(effect.kind, true,
-              "{}: the amplitude of order {:g} is {:.3g} ± {:.2g}: it may be zero, and its phase anything", effect.kind,
-              term.order, amplitude, reach);
+              "{}: the amplitude of order {:g} is {:.3g} ± {:.2g}: it may be zero, so its phase is not determined",
+              effect.kind, term.order, amplitude, reach);
     }
   }
 
-  /// The axis cannot have moved against friction that exceeds the motor torque.
+  /// The axis could not have moved if friction were larger than the motor torque.
   void examine_friction_level() {
     const sim::EffectEntry* coulomb = model_.find("coulomb");
     const double most = model_.data.effort_per_volt() * model_.data.dac_limit_V;
@@ -141,7 +141,7 @@ void keep_within_bounds(sim::EffectEntry& entry, sim::DriveKind kind, std::vecto
   const sim::EffectInfo& info = *sim::find_effect(entry.kind);
   for (auto& [id, value] : entry.parameters) {
     const sim::ParameterInfo* const parameter = info.parameter(id);
-    if (parameter == nullptr) continue;  // a numbered one: of either sign
+    if (parameter == nullptr) continue;  // a numbered parameter, which may have either sign
     const double bound = std::clamp(value, parameter->lower, parameter->upper);
     if (value == bound) continue;
     warnings.push_back(

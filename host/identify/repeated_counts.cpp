@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Products of two values of the response by their distance in rows, over the sum of squares.
+/// Sums of products of two values of the response, by their distance in rows, over the sum of squares.
 std::vector<double> autocorrelation(std::span<const double> response) {
   std::vector<double> products(response.size());
   for (std::size_t apart = 0; apart < products.size(); ++apart)
@@ -21,7 +21,7 @@ std::vector<double> autocorrelation(std::span<const double> response) {
   return products;
 }
 
-/// The factor by the fractional part of the counts a sample.
+/// The factor as a function of the fractional part of the counts per sample.
 class FactorBySpeed {
  public:
   explicit FactorBySpeed(std::span<const double> response) {

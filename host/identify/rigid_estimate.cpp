@@ -17,7 +17,8 @@ std::vector<Estimate> map_estimate(const Regression& regression, const Map& map)
   Eigen::MatrixXd jacobian(value.size(), theta.size());
   for (Eigen::Index c = 0; c < theta.size(); ++c) {
     const double deviation = std::sqrt(regression.covariance(c, c));
-    // Small against the value keeps the mapping's domain; the map is smooth, so rounding is what limits it below.
+    // A step that is small relative to the value stays in the domain of the map. It is much larger than rounding
+    // errors.
     const double step = std::min(deviation, 1e-4 * std::abs(theta(c)) + 1e-300);
     Eigen::VectorXd above = theta, below = theta;
     above(c) += step;
@@ -52,7 +53,7 @@ struct PhysicalFromDiscrete {
   double effort_per_volt, sample_period_s;
   Eigen::VectorXd operator()(const Eigen::VectorXd& theta) const {
     const double pole = theta(0), gain = theta(1);
-    const double ratio = std::abs(pole - 1.0) < 1e-9 ? 1.0 : (pole - 1.0) / std::log(pole);  // its limit at a pole of 1
+    const double ratio = std::abs(pole - 1.0) < 1e-9 ? 1.0 : (pole - 1.0) / std::log(pole);  // limit for a pole of 1
     Eigen::VectorXd physical(theta.size());
     physical(0) = ratio * effort_per_volt * sample_period_s / gain;
     physical(1) = (1.0 - pole) * effort_per_volt / gain;
@@ -94,7 +95,7 @@ Regression discrete_regression(const std::vector<Record>& records, const sim::Da
 
 constexpr int kCurveTerms = 8;
 
-/// Beginning and length of the travel of all motions.
+/// Start and length of the travel of all motions.
 std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Motion& motion : motions)
@@ -105,7 +106,8 @@ std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
   return {low, high - low};
 }
 
-/// Of inertia and viscous friction (P = 2), Coulomb friction (4) and a curve over the travel (4 + kCurveTerms).
+/// Regression of inertia and viscous friction (P = 2), with Coulomb friction (4) and a curve over the travel (4 +
+/// kCurveTerms).
 template <int P>
 Regression inverse_regression(const std::vector<Motion>& motions) {
   std::size_t rows = 0;

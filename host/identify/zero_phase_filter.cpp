@@ -40,10 +40,10 @@ ZeroPhaseLowPass::ZeroPhaseLowPass(std::span<const PolePair> poles, double cutof
     const double damping = -2.0 * pole.real * warped;
     const double square = (pole.real * pole.real + pole.imaginary * pole.imaginary) * warped * warped;
     const double norm = 1.0 + damping + square;
-    const double gain = square / norm;  // every section has gain 1 at 0 Hz
+    const double gain = square / norm;  // gain 1 at 0 Hz for every section
     sections_.push_back({gain, 2.0 * gain, gain, 2.0 * (square - 1.0) / norm, (1.0 - damping + square) / norm});
   }
-  const double periods = static_cast<double>(3 * poles.size());  // steeper filters ring longer
+  const double periods = static_cast<double>(3 * poles.size());  // steeper filters have a longer response
   extension_ = static_cast<std::size_t>(std::ceil(periods * sample_rate_Hz / cutoff_Hz));
 }
 

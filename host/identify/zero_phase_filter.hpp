@@ -1,4 +1,4 @@
-// Low-pass filters without delay: run forwards and backwards.
+// Low-pass filters without delay, applied forward and backward.
 #pragma once
 
 #include <span>
@@ -7,15 +7,15 @@
 namespace host {
 
 /// A low-pass applied in both directions, so that nothing is shifted in time. Each direction starts from the steady
-/// state of an odd extension of the signal: levels and ramps pass unchanged up to the ends.
-/// Cut-offs in Hz, 0 < cutoff < sample rate / 2; else std::invalid_argument.
+/// state of an odd extension of the signal, so that levels and ramps pass unchanged up to the ends. Cut-off in Hz, 0 <
+/// cutoff < sample rate / 2; otherwise throws std::invalid_argument.
 class ZeroPhaseLowPass {
  public:
   /// 4th-order Butterworth: -3 dB at the cut-off for one direction, -6 dB for both.
   static ZeroPhaseLowPass butterworth(double cutoff_Hz, double sample_rate_Hz);
 
-  /// 8th-order Chebyshev, gain 1 at 0 Hz, with a ripple of up to 0.05 dB (each direction): steep, the usual guard
-  /// before decimation.
+  /// 8th-order Chebyshev with gain 1 at 0 Hz and a ripple of up to 0.05 dB (each direction). It is steep, and the usual
+  /// guard filter before decimation.
   static ZeroPhaseLowPass chebyshev(double cutoff_Hz, double sample_rate_Hz);
 
   /// Filtered signal of the same length. Any length.

@@ -29,7 +29,7 @@ std::optional<Reading> parse_reading(std::string_view line, std::vector<std::str
   return reading;
 }
 
-/// Whether the first lines that hold something are readings, but for one in ten ("*** not connected").
+/// Whether nine of ten of the first non-empty lines are readings (others are "*** not connected").
 bool is_camonitor(std::string_view text) {
   constexpr std::size_t kLooked = 20;
   std::vector<std::string_view> fields;

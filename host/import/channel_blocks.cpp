@@ -1,5 +1,6 @@
-// Tables with a header of several lines above each channel, and time columns between the channels: TwinCAT 3 Scope's
-// export (layouts of its views, by the files of github.com/CagtayFabry/pytcs) and National Instruments' loggers.
+// Tables with a header of several lines above each channel, and time columns between the channels: exports of TwinCAT 3
+// Scope (layouts of its views according to the files in github.com/CagtayFabry/pytcs) and National Instruments'
+// loggers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ struct Line {
   Fields fields;
 };
 
-/// Stamps above this are FILETIME: units of 100 ns since 1601 (10^16 of them end in 1632).
+/// Larger stamps are FILETIME: units of 100 ns since 1601 (10^16 of them end in 1632).
 constexpr double kFiletime = 1e16, kFiletime_s = 1e-7;
 
 class BlockReader {
@@ -49,7 +50,7 @@ class BlockReader {
 
   static bool is_name_key(std::string_view field) { return field == "Name" || field == "Channel name"; }
 
-  /// Finds the separator: the character after the first field of a line of names.
+  /// Finds the separator: the character after the first field of a line with names.
   bool find_separator() {
     std::string_view rest = rest_.substr(0, kLookedAt);
     for (std::string_view line; take_line(rest, line);)
@@ -81,7 +82,7 @@ class BlockReader {
     return false;
   }
 
-  /// Whether a line holds numbers, at least two and nothing else. Finds the decimal comma, too.
+  /// Whether a line contains only numbers, at least two. Also finds a decimal comma.
   bool is_row(const Fields& fields) {
     std::size_t numbers = 0;
     bool commas = false;
@@ -95,7 +96,8 @@ class BlockReader {
     return numbers >= 2;
   }
 
-  /// A block begins wherever the line of names repeats its key; every other line must do so there, too.
+  /// A block begins wherever the line with the names repeats its key. Every other header line must repeat its key there
+  /// too.
   bool divide() {
     const auto names = std::ranges::find_if(header_, [](const Line& line) { return is_name_key(line.fields.front()); });
     if (names == header_.end()) return false;
@@ -185,7 +187,7 @@ class BlockReader {
     const double first = column.values.front();
     for (double& value : column.values) value = (value - first) * kFiletime_s;
     column.unit = 's';
-    column.last_digit = 16.0 * kFiletime_s;  // what a double holds of so large a number
+    column.last_digit = 16.0 * kFiletime_s;  // resolution of a double for a number of this size
   }
 
   template <typename... Args>

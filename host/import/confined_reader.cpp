@@ -28,13 +28,14 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kMostMemory = 1024 * kMebibyte, kLongestText = kMebibyte, kMostColumns = 100'000;
 
-/// Processor time, s: a damaged file may make a library loop for ever. Undamaged files take less than a tenth of it.
+/// Limit of processor time, s, because a damaged file may put a library into an endless loop. Undamaged files take less
+/// than a tenth of it.
 unsigned time_limit_s(std::size_t bytes) { return 5U + static_cast<unsigned>(bytes / (16 * kMebibyte)); }
 
-/// First byte of the parts of the answer.
+/// The first byte of each part of the answer.
 enum class Part : char { column = 'c', header = 'h', preamble = 'p', layout = 'l', failure = 'f', end = 'e' };
 
-/// The child's end.
+/// The child's end of the pipe.
 class Sender {
  public:
   explicit Sender(int pipe) : pipe_(pipe) {}
@@ -81,12 +82,12 @@ class Sender {
   int pipe_;
 };
 
-/// The parent's end. Trusts no received data, because a damaged file may have taken over the child.
+/// The parent's end of the pipe. It trusts no received data, because a damaged file may have taken over the child.
 class Receiver {
  public:
   Receiver(int pipe, SteadyTime until) : pipe_(pipe), until_(until) {}
 
-  /// Whether the answer was complete; `failure` is set if the child refused the file.
+  /// Whether the answer was complete. `failure` is set if the child rejected the file.
   bool take(Log& log, std::string& failure) {
     std::size_t numbers = 0;
     for (Part kind{}; bytes(&kind, sizeof kind);) {
@@ -160,7 +161,7 @@ class Receiver {
   bool timed_out_ = false;
 };
 
-/// `spare`: delay of the system's hard limit, which ends the process without a signal that shows the reason.
+/// `spare`: distance of the hard limit, which would end the process without a signal that shows the reason.
 void limit(__rlimit_resource resource, rlim_t most, rlim_t spare = 0) {
   rlimit now{};
   getrlimit(resource, &now);
@@ -169,7 +170,7 @@ void limit(__rlimit_resource resource, rlim_t most, rlim_t spare = 0) {
   setrlimit(resource, &now);
 }
 
-/// Bytes of address space that this process has taken so far.
+/// Bytes of address space that this process uses so far.
 std::size_t address_space() {
   std::array<char, 64> text{};
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -179,14 +180,15 @@ std::size_t address_space() {
 }
 
 void confine(unsigned seconds) {
-  for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);  // the caller's handlers are not for it
+  for (int signal = 1; signal < NSIG; ++signal)
+    std::signal(signal, SIG_DFL);  // the caller's handlers must not run in the child
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   prctl(PR_SET_DUMPABLE, 0);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, 0);  // the pipe is no file
+  limit(RLIMIT_FSIZE, 0);  // does not limit the pipe
   limit(RLIMIT_CPU, seconds, 1);
   limit(RLIMIT_AS, address_space() + kMostMemory);
 }
@@ -197,9 +199,10 @@ void confine(unsigned seconds) {
   try {
     sender.send(read(path));
   } catch (const std::bad_alloc&) {
-    sender.part(Part::failure, {fmt::format("{}: takes more than {} MiB to read, the most that a log may: damaged, or "
-                                            "to be saved with fewer rows",
-                                            path, kMostMemory / kMebibyte)});
+    sender.part(Part::failure,
+                {fmt::format("{}: needs more than {} MiB of memory, the limit for a log: it is damaged, or "
+                             "must be saved with fewer rows",
+                             path, kMostMemory / kMebibyte)});
   } catch (const std::exception& failure) {
     sender.part(Part::failure, {failure.what()});
   }
@@ -216,7 +219,7 @@ Log read_confined(const std::string& path, std::string_view library, Log (*read)
                                                    kLogSize.bytes / kMebibyte, kLogSize.of));
   const unsigned seconds = time_limit_s(unknown ? 0 : size);
   std::array<int, 2> ends{};
-  // one at a time: no other child may keep this pipe open when its own has crashed
+  // Only one thread forks at a time. Otherwise another child could keep this pipe open after its own child has crashed.
   static std::mutex forking;
   std::unique_lock alone(forking);
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure(ExitCode::permission, "cannot create a pipe");
@@ -227,7 +230,7 @@ Log read_confined(const std::string& path, std::string_view library, Log (*read)
   Log log;
   log.path = path;
   std::string failure;
-  // on a busy machine the child gets only a part of a processor
+  // On a busy machine the child gets only a part of a processor.
   Receiver receiver(ends[0], std::chrono::steady_clock::now() + std::chrono::seconds(3 * seconds));
   const bool whole = child > 0 && receiver.take(log, failure);
   close(ends[0]);

@@ -8,17 +8,17 @@
 
 namespace host {
 
-/// Runs `read` on the file at `path` in a separate process, which can neither write files nor use more than a gigabyte
-/// nor run for long, and returns its result. `library`: its name in messages; load it before. Throws Failure
-/// (bad_input): that of `read`, or the way in which the process ended.
+/// Runs `read` on the file at `path` in a separate process and returns its result. The process cannot write files, use
+/// more than a gigabyte of memory, or run for long. `library`: its name in messages; must be loaded before. Throws
+/// Failure(bad_input): that of `read`, or a description of how the process ended.
 ///
-/// Why a fork and no program of its own: the Python module and installed copies of the library have no such program
-/// beside them. Why it is safe although callers have several threads: the C library makes its heap, its streams and its
-/// loader usable in the child, `read` uses nothing else that a thread of the caller may have locked, and the libraries
-/// are used in children only, so that their own states are as they were loaded. One exception remains: a program that
-/// uses the same libsqlite3 in another thread at that instant. Its child would wait for ever; the time limit ends it.
-/// A filter of system calls alone (seccomp) would not survive a crash of the library, and an interpreter of each format
-/// of our own would be ten times this code.
+/// It is a fork and not a separate program, because the Python module and installed copies of the library have no such
+/// program beside them. The fork is safe although callers have several threads: the C library makes its heap, its
+/// streams and its loader usable in the child, `read` uses nothing else that a thread of the caller may have locked,
+/// and the third-party libraries are used in children only, so that they are in the state in which they were loaded.
+/// There is one exception: a program that uses the same libsqlite3 in another thread at that moment. Its child would
+/// wait forever; the time limit ends it. A filter of system calls alone (seccomp) would not survive a crash of the
+/// library, and own interpreters of all formats would need ten times this code.
 Log read_confined(const std::string& path, std::string_view library, Log (*read)(const std::string& path));
 
 }  // namespace host

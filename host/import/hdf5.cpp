@@ -1,4 +1,4 @@
-// HDF5 files: every data set of numbers below the root, whatever its group.
+// HDF5 files: every data set of numbers below the root, in any group.
 #define H5_USE_110_API  // names and types of version 1.10, which later versions offer as well
 #include <fmt/format.h>
 #include <hdf5.h>
@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-constexpr unsigned kReadOnly = 0;  // H5F_ACC_RDONLY, whose macro calls the library
+constexpr unsigned kReadOnly = 0;  // H5F_ACC_RDONLY; its macro would call the library
 
 struct Hdf5Library {
   explicit Hdf5Library(const ReaderLibrary& library) {
@@ -92,7 +92,7 @@ struct Hdf5Library {
   decltype(&H5Aread) read_attribute = nullptr;
   decltype(&H5Aclose) close_attribute = nullptr;
   decltype(&H5free_memory) free_memory = nullptr;
-  hid_t* a_double = nullptr;  ///< its type, once the library is open
+  hid_t* a_double = nullptr;  ///< type of a double, once the library is open
 };
 
 const Hdf5Library& hdf5_library() {
@@ -100,7 +100,7 @@ const Hdf5Library& hdf5_library() {
   return library;
 }
 
-/// An object of the library, closed at its end.
+/// An object of the library that is closed by the destructor.
 class Hdf5Object {
  public:
   Hdf5Object(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -110,7 +110,7 @@ class Hdf5Object {
     if (id_ >= 0) close_(id_);
   }
   bool is_open() const { return id_ >= 0; }
-  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): what the library's functions take
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): the library's functions take it
 
  private:
   hid_t id_;
@@ -126,7 +126,7 @@ class Hdf5Reader {
 
   Log read() {
     h5_.open();
-    h5_.set_error_printer(H5E_DEFAULT, nullptr, nullptr);  // exceptions report failures, not the library
+    h5_.set_error_printer(H5E_DEFAULT, nullptr, nullptr);  // failures are reported by exceptions
     h5_.load_no_plugins(0);
     const hid_t file = h5_.open_file(log_.path.c_str(), kReadOnly, H5P_DEFAULT);
     if (file < 0)
@@ -134,7 +134,7 @@ class Hdf5Reader {
                     fmt::format("{}: not an HDF5 file that can be read: cut off, or still open in the program that "
                                 "writes it; save it again",
                                 log_.path));
-    // every object once and by hard links only: neither circles nor other files
+    // Visits every object once and by hard links only, so that there are neither cycles nor other files.
     const herr_t visited = h5_.visit(
         file, H5_INDEX_NAME, H5_ITER_INC,
         [](hid_t root, const char* name, const H5O_info_t* info, void* self) {
@@ -152,7 +152,7 @@ class Hdf5Reader {
   }
 
  private:
-  /// Exceptions must not cross the library.
+  /// Exceptions must not pass through the library.
   void add_object(hid_t root, const char* name, H5O_type_t type) {
     if (!refusal_.empty()) return;
     try {
@@ -184,7 +184,7 @@ class Hdf5Reader {
     if (rank < 1 || rank > 2 || lies_elsewhere(set) || (fields > 1 && rank == 2 && sizes[1] > 1)) {
       leave(name, rank < 1 ? "a single value" : shape,
             lies_elsewhere(set) ? "lies in another file; copy it into this one (h5repack)"
-                                : "is no table of rows and columns; name another");
+                                : "is not a table of rows and columns; name another");
       return;
     }
     announced_ += static_cast<double>(sizes[0]) * static_cast<double>(sizes[1]) * fields;
@@ -218,7 +218,7 @@ class Hdf5Reader {
     std::vector<std::string> units;
   };
 
-  /// `memory`: the type in which the numbers are read; negative where the array holds no numbers.
+  /// `memory`: the type in which the numbers are read; negative if the array does not contain numbers.
   void add_array(hid_t set, const Label& label, hid_t memory, std::size_t rows, std::size_t columns) {
     if (memory < 0) return leave(label.name, label.kind, "holds no numbers; name another");
     std::vector<double> values(rows * columns);
@@ -276,7 +276,8 @@ class Hdf5Reader {
     }
   }
 
-  /// Attributes `dt` (s) and `rate` (Hz) of groups and data sets, as a line of a preamble states a period.
+  /// Attributes `dt` (s) and `rate` (Hz) of groups and data sets, converted to a line of a preamble that states a
+  /// period.
   void take_period(hid_t object) {
     constexpr std::pair<const char*, std::string_view> kPeriods[] = {{"dt", "sampling period: {} s"},
                                                                      {"rate", "sampling rate: {} Hz"}};
@@ -294,7 +295,7 @@ class Hdf5Reader {
     }
   }
 
-  /// The texts of an attribute; empty where there is none of that name.
+  /// The texts of an attribute; empty if there is no attribute of that name.
   std::vector<std::string> texts_of(hid_t object, const char* name) const {
     constexpr std::size_t kLongest = 64, kMost = 1000;
     if (h5_.has_attribute(object, name) <= 0) return {};
@@ -328,7 +329,7 @@ class Hdf5Reader {
   Log log_;
   std::string refusal_;
   std::size_t objects_ = 0;
-  double announced_ = 0.0;  ///< numbers; a packed file may announce more than fits into memory
+  double announced_ = 0.0;  ///< count of numbers; a compressed file may announce more than fits into memory
 };
 
 }  // namespace

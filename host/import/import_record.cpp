@@ -21,10 +21,10 @@ namespace host {
 
 namespace {
 
-/// One column of the record while it is made: the numbers of its source, and their stamps.
+/// One column of the record while it is being made: the numbers of its source and their time stamps.
 struct Source {
   const Mapping* mapping = nullptr;
-  const LogColumn* column = nullptr;  ///< nullptr: the row number
+  const LogColumn* column = nullptr;  ///< null for the row number
   std::vector<double> raw;
   StampedChannel stamped;
   std::size_t blanks = 0;  ///< rows without a value (slower channels of a multi-rate log)
@@ -146,7 +146,7 @@ class Importer {
     return length;
   }
 
-  /// Scales the source's values and puts its stamps beside them, without the rows that hold no value.
+  /// Scales the values of the source and adds their stamps. Rows without a value are left out.
   void stamp(Source& source) {
     const bool own_time = !source.mapping->time_source.empty();
     const std::vector<double>& stamps = own_time ? usable(source.mapping->time_source).values : time_->raw;
@@ -238,8 +238,8 @@ class Importer {
     state_what_was_done(period_s, start, end);
   }
 
-  /// Limit of resampling: more than ten times the logged samples add no information, and a mistyped period would fill
-  /// the memory.
+  /// Limits resampling: more than ten times the number of logged samples would add no information, and with a mistyped
+  /// period they would fill the memory.
   void refuse_hopeless(double period_s, double length_s) const {
     constexpr double kMostPerSample = 10.0;
     const double finest = static_cast<double>(longest()) * kMostPerSample;

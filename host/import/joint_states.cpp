@@ -18,11 +18,11 @@ namespace host {
 
 namespace {
 
-/// Limit of joints in a bag, over all topics: a robot has some dozen.
+/// Largest number of joints in a bag, over all topics; a robot has some dozen.
 constexpr std::size_t kMostJoints = 1000;
 
-/// Common Data Representation (OMG DDS-XTypes 1.3, 7.4): numbers lie at multiples of their size behind the
-/// encapsulation header, which tells their byte order.
+/// Common Data Representation (OMG DDS-XTypes 1.3, 7.4). Numbers are aligned to their size after the encapsulation
+/// header, which states their byte order.
 class CdrReader {
  public:
   explicit CdrReader(std::string_view message) : bytes_(message) {
@@ -46,7 +46,7 @@ class CdrReader {
     return std::bit_cast<Number>(raw);
   }
 
-  /// Its length counts the zero at the end.
+  /// The length includes the terminating zero.
   std::string_view text() {
     const std::size_t size = number<std::uint32_t>();
     if (!has(size)) return {};
@@ -55,7 +55,7 @@ class CdrReader {
     return text.substr(0, text.find('\0'));
   }
 
-  /// Of a sequence whose members take at least `size` bytes each.
+  /// Length of a sequence whose members take at least `size` bytes each.
   std::size_t count(std::size_t size) {
     const std::size_t count = number<std::uint32_t>();
     is_good_ = is_good_ && count <= kMostJoints;
@@ -85,7 +85,7 @@ struct JointMessage {
   std::vector<double> positions, speeds, efforts;
 };
 
-/// std_msgs/Header (time, frame), names, positions, velocities, efforts. False where the message is damaged.
+/// std_msgs/Header (time, frame), names, positions, velocities, efforts. Returns false if the message is damaged.
 bool decode_joint_message(std::string_view bytes, JointMessage& message) {
   CdrReader reader(bytes);
   const std::int64_t second = reader.number<std::int32_t>();
@@ -105,9 +105,10 @@ bool decode_joint_message(std::string_view bytes, JointMessage& message) {
 void JointStates::add(const std::string& topic, std::string_view message, std::int64_t received_ns) {
   JointMessage read;
   if (!decode_joint_message(message, read))
-    throw Failure(ExitCode::bad_input, fmt::format("{}: message {} of topic {} is no {} in CDR: damaged, or packed; "
-                                                   "unpack the bag with ros2 bag convert, or save it again",
-                                                   path_, messages_ + 1, topic, kJointStateType));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: message {} of topic {} is not a {} in CDR: damaged or compressed; "
+                              "unpack the bag with ros2 bag convert, or save it again",
+                              path_, messages_ + 1, topic, kJointStateType));
   numbers_ += 4 * read.names.size();
   if (numbers_ > kMostLogNumbers)
     throw Failure(ExitCode::bad_input,
@@ -116,7 +117,8 @@ void JointStates::add(const std::string& topic, std::string_view message, std::i
                               path_, kMostLogNumbers));
   const std::int64_t stamp_ns = read.stamp_ns != 0 ? read.stamp_ns : received_ns;
   if (messages_++ == 0) first_ns_ = stamp_ns;
-  // from the first on, before it becomes a double: since 1970 a double has steps of 0.2 us; a damaged time may overflow
+  // Subtracts the first stamp before the conversion, because a double has steps of 0.2 us for times since 1970. Uses
+  // unsigned numbers, because a damaged time may overflow.
   const auto since_ns =
       static_cast<std::int64_t>(static_cast<std::uint64_t>(stamp_ns) - static_cast<std::uint64_t>(first_ns_));
   std::map<std::string, Joint>& joints = topics_[topic];
@@ -148,7 +150,7 @@ Log JointStates::log(const std::vector<BagTopic>& topics) const {
       std::string prefix = topics_.size() > 1 ? fmt::format("{}/", topic) : "";
       if (prefix.starts_with('/')) prefix.erase(0, 1);
       const std::string joint_name = prefix + name;
-      // joints of the same messages have the same stamps
+      // Joints of the same messages have the same stamps.
       std::string clock;
       for (const std::string& known : clocks)
         if (log.find(known).values == joint.time_s) clock = known;
@@ -169,7 +171,7 @@ Log JointStates::log(const std::vector<BagTopic>& topics) const {
                                  std::string(unit),
                                  clock});
     }
-  if (clocks.size() == 1)  // the log's own
+  if (clocks.size() == 1)  // one clock for the whole log
     for (LogColumn& column : log.columns) column.time.clear();
   if (!log.columns.empty()) return log;
   constexpr std::size_t kListed = 30;

@@ -13,28 +13,28 @@ namespace host {
 
 inline constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 
-/// The units of their columns, by the definition of the message; the joint determines which of the two applies.
+/// The units of the columns, by the definition of the message. Which of the two applies depends on the joint.
 inline constexpr std::string_view kJointPositionUnit = "rad or m", kJointSpeedUnit = "rad/s or m/s",
                                   kJointEffortUnit = "Nm or N";
 
-/// A bag's description of one of its topics.
+/// Description of one topic in a bag.
 struct BagTopic {
   std::string name, type, encoding;
 
   bool has_joint_states() const { return type == kJointStateType && encoding == "cdr"; }
 };
 
-/// Collects the messages of a bag.
+/// Collects the joint messages of a bag.
 class JointStates {
  public:
   explicit JointStates(std::string_view path) : path_(path) {}
 
-  /// Adds one message, in CDR with its encapsulation header; `received_ns` is used if its own stamp is zero. Throws
-  /// Failure (bad_input) if it is damaged, or if the log becomes too large.
+  /// Adds one message in CDR with its encapsulation header. `received_ns` is used if the message has no stamp. Throws
+  /// Failure(bad_input) if it is damaged, or if the log becomes too large.
   void add(const std::string& topic, std::string_view message, std::int64_t received_ns);
 
-  /// A column for each quantity of each joint. Throws Failure (bad_input) listing the bag's topics if none of them has
-  /// joint states.
+  /// The log with a column for each quantity of each joint. Throws Failure(bad_input), with the list of the bag's
+  /// topics, if none of them has joint states.
   Log log(const std::vector<BagTopic>& topics) const;
 
  private:

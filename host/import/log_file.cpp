@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-/// Number of a column, from 1; 0 when the name is no number.
+/// Number of a column, from 1; 0 if the name is not a number.
 std::size_t column_number(std::string_view name) {
   if (name.starts_with('#')) name.remove_prefix(1);
   std::size_t number = 0;
@@ -25,7 +25,7 @@ std::size_t column_number(std::string_view name) {
   return error == std::errc{} && end == name.data() + name.size() ? number : 0;
 }
 
-/// `log(:,2)` as MATLAB writes it is `log(2)` here.
+/// Converts `log(:,2)`, as MATLAB writes it, to `log(2)`.
 std::string without_colon(std::string_view name) {
   std::string plain;
   for (const char c : name)
@@ -46,7 +46,7 @@ std::string start_of(const std::string& path) {
   return start;
 }
 
-/// Files that no library of Debian reads, or that contain a log in an archive.
+/// Rejects files that no library of Debian reads, and archives.
 void refuse_unread(std::string_view start, const std::string& path) {
   struct Unread {
     std::string_view magic, what;

@@ -21,7 +21,7 @@ bool is_name_character(char c) {
          byte >= 0x80;
 }
 
-/// factor * source + shift, while it is parsed.
+/// factor * source + shift, during parsing.
 struct Linear {
   double factor = 0.0;
   double shift = 0.0;
@@ -79,7 +79,7 @@ class MappingParser {
     return mapping_;
   }
 
-  /// `x_mm=3*0.5`: where no name follows up to the comma, a whole number in front is a column's number.
+  /// `x_mm=3*0.5`: if no name follows up to the comma, a whole number at the start is the number of a column.
   void take_leading_column_number() {
     skip_blanks();
     std::size_t end = at_;
@@ -127,7 +127,7 @@ class MappingParser {
     return product;
   }
 
-  /// A number, or the source (once).
+  /// A number, or the source, which may occur once.
   Linear take_factor() {
     if (at_end()) fail("the expression ends too early; {}", kExample);
     if (column_number_end_ > at_) {

@@ -66,7 +66,7 @@ std::string size_of(const matvar_t& variable) {
   return text;
 }
 
-/// Elements of an array in the library's memory: `count` from `first` on, every `stride`-th.
+/// A part of an array in the library's memory: every `stride`-th element from `first` on, `count` in all.
 struct Stretch {
   std::size_t first, count, stride;
 };
@@ -79,8 +79,8 @@ std::vector<double> as_doubles(const void* data, const Stretch& stretch) {
   return values;
 }
 
-/// Empty where the array holds no real numbers. Every element becomes a double before anything is computed with it, so
-/// integers of the log neither wrap nor saturate.
+/// The numbers; empty if the array contains no real numbers. Every element is converted to a double before any
+/// computation, so that integers neither wrap nor saturate.
 std::vector<double> numbers_of(const matvar_t& variable, const Stretch& stretch) {
   if (variable.isComplex != 0 || variable.data == nullptr) return {};
   switch (variable.class_type) {
@@ -140,7 +140,7 @@ void append_array(const matvar_t& variable, const std::string& name, const std::
 
 constexpr int kDeepestStruct = 8;
 
-/// The announced number of values of a variable; a packed file may announce more than fits into memory.
+/// The number of values that a variable announces. A compressed file may announce more than fits into memory.
 double announced_numbers(const matvar_t& variable, int depth) {
   double count = 1.0;
   for (int k = 0; k < variable.rank; ++k) count *= static_cast<double>(variable.dims[k]);
@@ -167,14 +167,14 @@ void append_variable(matvar_t& variable, const std::string& name, int depth, Log
       append_variable(*field, fmt::format("{}.{}", name, names[k]), depth + 1, log);
 }
 
-/// Whether a file of level 5 (MAT-File Format, chapter 1: an element's tag tells its size) ends within a variable: the
-/// library would fill the rest of it with anything.
+/// Whether a level 5 file (MAT-File Format, chapter 1: the tag of an element gives its size) ends within a variable.
+/// The library would fill the rest of the variable with undefined values.
 bool ends_within_variable(const std::string& path) {
   constexpr std::size_t kHead = 128, kMark = 126, kTag = 8;
   std::ifstream file(path, std::ios::binary);
   std::array<char, kHead> head{};
   const bool is_big = file.read(head.data(), kHead) && std::string_view(head.data() + kMark, 2) == "MI";
-  if (!is_big && std::string_view(head.data() + kMark, 2) != "IM") return false;  // of another level
+  if (!is_big && std::string_view(head.data() + kMark, 2) != "IM") return false;  // not a level 5 file
   if (head[is_big ? 124 : 125] != 1) return false;
   const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
   for (std::size_t at = kHead; at < size;) {
@@ -192,7 +192,7 @@ Log read_by_matio(const std::string& path) {
   const MatLibrary& matio = mat_library();
   if (ends_within_variable(path))
     throw Failure(ExitCode::bad_input, fmt::format("{}: cut off within a variable; save it again", path));
-  matio.log_to("axistool", [](int, char*) {});  // exceptions report failures, not the library
+  matio.log_to("axistool", [](int, char*) {});  // failures are reported by exceptions
   const std::unique_ptr<mat_t, CloseMat> file(matio.open(path.c_str(), MAT_ACC_RDONLY));
   if (!file)
     throw Failure(ExitCode::bad_input,

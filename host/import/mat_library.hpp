@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// The functions of matio that are needed for reading.
+/// The functions of matio for reading.
 struct MatLibrary {
   decltype(&Mat_LogInitFunc) log_to = nullptr;
   decltype(&Mat_Open) open = nullptr;
@@ -20,7 +20,7 @@ struct MatLibrary {
   decltype(&Mat_VarGetStructFieldByIndex) field = nullptr;
 };
 
-/// kMatio. Throws as ReaderLibrary does.
+/// The library kMatio. Throws as ReaderLibrary does.
 const MatLibrary& mat_library();
 
 /// The library of this name.

@@ -1,4 +1,4 @@
-// MCAP files (mcap.dev/spec, version 0), as ROS 2 records them: from start to end, without their indices.
+// MCAP files (mcap.dev/spec, version 0) as ROS 2 records them, read from start to end without their indices.
 #include <fmt/format.h>
 #include <lz4frame.h>
 #include <zstd.h>
@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-/// `records` unpacked to its `size` bytes; empty where they are damaged.
+/// Unpacks `records` to `size` bytes; empty if they are damaged.
 std::string unpack_zstd(std::string_view records, std::size_t size) {
   decltype(&ZSTD_decompress) decompress = nullptr;
   decltype(&ZSTD_isError) is_error = nullptr;
@@ -47,7 +47,7 @@ std::string unpack_lz4(std::string_view records, std::size_t size) {
   return more == 0 && put == size ? text : std::string();
 }
 
-/// Numbers with the low byte first, texts behind their length.
+/// Little-endian numbers, and texts preceded by their length.
 class McapFields {
  public:
   explicit McapFields(std::string_view bytes) : rest_(bytes) {}
@@ -98,7 +98,7 @@ class McapReader {
     throw Failure(ExitCode::bad_input, fmt::format("{}: {}", path_, what));
   }
 
-  /// Whether the last record says that it is the last, or all bytes of a chunk are taken.
+  /// Reads records. Returns true after the final record, or at the end of a chunk.
   bool take_records(std::string_view bytes, bool in_chunk) {
     McapFields fields(bytes);
     while (!fields.rest().empty()) {
@@ -128,9 +128,9 @@ class McapReader {
       }
       case Opcode::message: {
         const auto topic = topics_.find(record.number(2));
-        record.number(4);  // its sequence number
+        record.number(4);  // sequence number
         const auto logged_ns = static_cast<std::int64_t>(record.number(8));
-        record.number(8);  // when it was published
+        record.number(8);  // time of publication
         if (record.is_good() && topic != topics_.end() && topic->second.has_joint_states())
           joints_.add(topic->second.name, record.rest(), logged_ns);
         break;
@@ -139,14 +139,14 @@ class McapReader {
         if (in_chunk) fail("a chunk within a chunk: damaged; mend it with mcap recover");
         take_chunk(record);
         return;
-      default:  // indices, statistics, attachments, and what later versions add
+      default:  // indices, statistics, attachments, and additions of later versions
         return;
     }
     if (!record.is_good()) fail("a record is shorter than its fields: damaged; mend it with mcap recover");
   }
 
   void take_chunk(McapFields chunk) {
-    chunk.take(16);  // its first and last time
+    chunk.take(16);  // first and last time
     const std::uint64_t size = chunk.number(8), crc = chunk.number(4);
     const std::string_view packing = chunk.text(), records = chunk.take(chunk.number(8));
     if (!chunk.is_good()) fail("a chunk ends before its records: damaged; mend it with mcap recover");

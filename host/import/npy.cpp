@@ -66,9 +66,9 @@ class NpyReader {
     if (rows_ > kMostLogNumbers / std::max<std::size_t>(1, columns_ * fields_.size()))
       fail(path_, fmt::format("more than {} numbers, the most that a log may have; save fewer rows or columns",
                               kMostLogNumbers));
-    if (rows_ == 0 || row == 0) fail(path_, "the array is empty; save one that holds a log");
+    if (rows_ == 0 || row == 0) fail(path_, "the array is empty; save one that contains a log");
     if (bytes_.size() / row < rows_)
-      fail(path_, fmt::format("the file ends within its array of {} x {} numbers: it was cut; save it again", rows_,
+      fail(path_, fmt::format("the file ends within its array of {} x {} numbers: it was cut off; save it again", rows_,
                               columns_));
     Log log;
     log.path = path_;
@@ -91,7 +91,7 @@ class NpyReader {
     by_columns_ = after("'fortran_order':").starts_with("True");
   }
 
-  /// The text after a key of the header, without leading blanks.
+  /// The text after a key in the header, without leading blanks.
   std::string_view after(std::string_view key) const {
     const std::size_t at = header_.find(key);
     if (at == std::string_view::npos)
@@ -101,7 +101,7 @@ class NpyReader {
     return rest;
   }
 
-  /// Takes a text in single quotes that begins `rest`.
+  /// Removes the text in single quotes at the start of `rest` and returns it.
   std::string_view take_quoted(std::string_view& rest) const {
     const std::size_t begin = rest.find('\''), end = rest.find('\'', begin + 1);
     if (begin == std::string_view::npos || end == std::string_view::npos) fail(path_, "a damaged header");

@@ -1,4 +1,4 @@
-// Archives of NumPy arrays (numpy.savez): a ZIP file whose members, not compressed, are .npy files (APPNOTE.TXT 4.3).
+// Archives of NumPy arrays (numpy.savez): a ZIP file with uncompressed .npy files (APPNOTE.TXT 4.3).
 #include <fmt/format.h>
 
 #include "host/exit_codes.hpp"
@@ -41,7 +41,7 @@ class ZipReader {
     return value;
   }
 
-  /// The directory stands at the end, and behind it where it begins.
+  /// The directory is at the end of the file, followed by its position.
   void find_directory() {
     const std::size_t end = bytes_.rfind("PK\x05\x06");
     if (end == std::string_view::npos) refuse_archive(path_, "the archive is cut off; save it again");
@@ -67,7 +67,7 @@ class ZipReader {
     add_array(array, name, log);
   }
 
-  /// Members that hold no rows of numbers (texts, single values) are left out.
+  /// Members without rows of numbers (texts, single values) are left out.
   void add_array(std::string_view array, std::string_view name, Log& log) const {
     Log part;
     try {

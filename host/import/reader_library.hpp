@@ -1,5 +1,5 @@
-// Libraries that read one kind of log. They are loaded when the first such file is read, because they load some forty
-// further libraries, for which no other command should wait.
+// Libraries that read one kind of log. Each is loaded when the first such file is read, because they depend on some
+// forty further libraries, which other commands do not need.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,16 +12,17 @@
 
 namespace host {
 
-/// File name for the dynamic linker, of the version whose headers were used for this program; and its Debian package.
+/// File name for the dynamic linker, with the version whose headers were used for this program, and its Debian package.
 struct LibraryName {
   std::string file, package;
 };
 extern const LibraryName kMatio, kHdf5, kSqlite, kLz4, kZstd;
 
-/// Stays loaded until the program ends. Throws Failure (bad_input) when it is not installed, or lacks a function.
+/// The library stays loaded until the program ends. Throws Failure(bad_input) if it is not installed or lacks a
+/// function.
 class ReaderLibrary {
  public:
-  /// `what`: the files that it reads, for messages: "MATLAB files".
+  /// `what`: the files that the library reads, for messages: "MATLAB files".
   ReaderLibrary(std::string_view what, const LibraryName& name) : library_(name.file), name_(name) {
     if (!library_.is_loaded())
       throw Failure(ExitCode::bad_input,

@@ -1,4 +1,4 @@
-// Bags that ROS 2 keeps in SQLite (.db3), with the tables of rosbag2_storage_sqlite3.
+// Bags that ROS 2 stores in SQLite (.db3), with the tables of rosbag2_storage_sqlite3.
 #include <fmt/format.h>
 #include <sqlite3.h>
 
@@ -51,7 +51,7 @@ const SqliteLibrary& sqlite_library() {
   return library;
 }
 
-/// Immutable: neither locks nor a journal beside the file.
+/// URI of a file that SQLite opens as immutable, so without locks and without a journal beside it.
 std::string address_of(const std::string& path) {
   std::string address = "file:";
   for (const char c : path)
@@ -80,7 +80,7 @@ class RosbagReader {
     for (const char* const factor : {"PRAGMA page_size", "PRAGMA page_count"})
       each_row(factor, [&](sqlite3_stmt* row) { size *= sqlite_.integer(row, 0); });
     if (std::filesystem::file_size(path_) <
-        static_cast<std::uintmax_t>(size))  // the library reads zeros beyond the end
+        static_cast<std::uintmax_t>(size))  // the library would read zeros after the end
       throw Failure(ExitCode::bad_input, fmt::format("{}: cut off; copy the bag again", path_));
     std::map<std::int64_t, BagTopic> topics;
     each_row("SELECT id, name, type, serialization_format FROM topics", [&](sqlite3_stmt* row) {

@@ -1,5 +1,6 @@
-// Traces of SINUMERIK controls: XML in which a dataFrame lists its dataSignals, and then one element `rec` a sample,
-// with an attribute `time` (s) and one for each signal (by the reader of github.com/eliasrhoden/Trace-Tools).
+// Traces of SINUMERIK controls: XML in which a dataFrame lists its dataSignals. It is followed by one element `rec` per
+// sample, with an attribute `time` (s) and one attribute per signal (as in the reader
+// github.com/eliasrhoden/Trace-Tools).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace host {
 
 namespace {
 
-/// Numbers above this are the bits of "not a number", written as a whole number: no value.
+/// Larger numbers are a NaN whose bits are written as a whole number: there is no value.
 constexpr double kNoValue = 9.2188684372274e18;
 
 std::string unescaped(std::string_view text) {

@@ -27,7 +27,7 @@ std::string_view without_brackets(std::string_view unit) {
   return bracketed ? trim_blanks(unit.substr(1, unit.size() - 2)) : unit;
 }
 
-/// The name that a record has for a quantity of this name and unit, else the name.
+/// The name of a quantity with this name and unit in records, if there is one; otherwise the name.
 std::string name_with_unit(std::string_view name, std::string_view unit) {
   std::string full = fmt::format("{}_{}", name, unit);
   std::ranges::replace(full, '/', '_');
@@ -80,7 +80,7 @@ class TableReader {
     return layout_.number(field).has_value() || parse_clock(field).has_value();
   }
 
-  /// Sets `line_` to the first line that has the table's fields. Earlier lines are remarks or a preamble.
+  /// Sets `line_` to the first line with the number of fields of the table. Earlier lines are remarks or a preamble.
   void find_table() {
     std::size_t preamble = 0;
     while (next_line()) {
@@ -90,16 +90,17 @@ class TableReader {
         continue;
       }
       layout_.split(line_, fields_);
-      if (fields_.size() == layout_.fields + 1 && fields_.back().empty()) fields_.pop_back();  // headings that end so
+      if (fields_.size() == layout_.fields + 1 && fields_.back().empty())
+        fields_.pop_back();  // headings that end with a separator
       if (fields_.size() == layout_.fields) break;
       if (fields_.size() > 1 && std::ranges::all_of(fields_, [&](std::string_view f) { return is_value(f); }))
         fail_field_count(layout_.fields);
       keep_preamble();
       ++preamble;
     }
-    if (trim_blanks(line_).empty()) fail("no rows; name a file that holds a log");
+    if (trim_blanks(line_).empty()) fail("no rows; name a file that contains a log");
     if (preamble > 0)
-      log_.header["imported_preamble"] = fmt::format("{} lines in front of the table were left out", preamble);
+      log_.header["imported_preamble"] = fmt::format("{} lines before the table were left out", preamble);
   }
 
   void keep_preamble() {
@@ -122,7 +123,7 @@ class TableReader {
     for (std::size_t k = 0; k < fields_.size(); ++k) log_.columns[k].name = fields_[k];
     constexpr int kMostHeadings = 4;
     for (int k = 0; k < kMostHeadings; ++k) {
-      if (!next_line()) fail("no rows follow the headings; name a file that holds a log");
+      if (!next_line()) fail("no rows follow the headings; name a file that contains a log");
       while (is_remark(line_) && next_line()) {
       }
       layout_.split(line_, fields_);
@@ -131,14 +132,14 @@ class TableReader {
     }
   }
 
-  /// Further lines of headings: as many texts, no value among them.
+  /// Whether this is a further line of headings: the same number of texts, and no values.
   bool are_headings(const Fields& fields) const {
     return fields.size() == log_.columns.size() &&
            std::ranges::any_of(fields, [](std::string_view f) { return !f.empty(); }) &&
            std::ranges::none_of(fields, [&](std::string_view f) { return is_value(f); });
   }
 
-  /// Whether all of the line's texts are as short as units.
+  /// Takes the line as units if all of its texts are as short as units.
   bool take_units() {
     constexpr std::size_t kLongestUnit = 16;
     if (std::ranges::any_of(fields_, [](std::string_view f) { return f.size() > kLongestUnit; })) return false;
@@ -150,7 +151,7 @@ class TableReader {
     return true;
   }
 
-  /// "Analog 1" above "Servo motor speed".
+  /// Appends the second line of headings to the first: "Analog 1" above "Servo motor speed".
   void append_headings() {
     for (std::size_t k = 0; k < fields_.size(); ++k)
       if (!fields_[k].empty())
@@ -184,7 +185,7 @@ class TableReader {
     column.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
 
-  /// A column whose first value is a time of day counts seconds from the first day's midnight.
+  /// If the first value of a column is a time of day, the column counts seconds from midnight of the first day.
   std::optional<double> value_of(ColumnState& state, LogColumn& column, std::string_view field) const {
     const bool is_first = !std::exchange(state.begun, true);
     const std::optional<double> number = layout_.number(field);

@@ -15,15 +15,15 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Degrees of freedom of the innovations (Lange et al. 1989).
+/// Degrees of freedom of the t distribution of the innovations (Lange et al. 1989).
 constexpr double kDegrees = 4.0;
-/// A memory below this part of its usual size counts as zero: the prior favours zero with the weight of two
+/// A memory below this part of its usual size counts as zero. The prior favours zero with the weight of two
 /// observations.
 constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Starting size of a fit that searches for a large memory.
 constexpr double kLargeSize = 0.1;
 constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
-/// Nats by which a round must still gain.
+/// Smallest gain of a round, nats, after which a further round follows.
 constexpr double kSettled = 0.02;
 
 double log_student(double square) {
@@ -43,7 +43,7 @@ VectorXd Evidence::no_memory() const {
 
 namespace {
 
-/// Prior deviations of all columns, those of the memory at their present sizes.
+/// Prior standard deviations of all columns; those of the memory for its present sizes.
 VectorXd all_deviations(const VectorXd& deviations, const Memory& memory, const VectorXd& sizes) {
   VectorXd all(deviations.size() + memory.columns.cols());
   all.head(deviations.size()) = deviations;
@@ -53,7 +53,7 @@ VectorXd all_deviations(const VectorXd& deviations, const Memory& memory, const 
   return all;
 }
 
-/// The information of factors in units of their prior deviations.
+/// The information matrix of the factors in units of their prior standard deviations, factorised.
 Eigen::LLT<MatrixXd> information_of(const MatrixXd& gram, const VectorXd& deviations) {
   MatrixXd scaled = deviations.asDiagonal() * gram * deviations.asDiagonal();
   scaled.diagonal().array() += 1.0;
@@ -116,7 +116,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     fit.information = information_of(gram, deviations_now);
     factors = deviations_now.cwiseProduct(fit.information.solve(deviations_now.cwiseProduct(projection)));
     fit.residual = white_y - white * factors;
-    // Weights and scale of the t distribution, alternately.
+    // Weights and scale of the t distribution alternately.
     for (int step = 0; step < 4; ++step) {
       unit_weights = ((kDegrees + 1.0) / (kDegrees + fit.residual.array().square() / square)).matrix();
       square = std::max(unit_weights.dot(fit.residual.cwiseAbs2()) / static_cast<double>(n), std::pow(least_noise_, 2));
@@ -166,7 +166,7 @@ VectorXd Evidence::gains(const EvidenceFit& fit, const MatrixXd& further, const 
   const VectorXd pull = weighed.transpose() * fit.residual;
   for (Index c = 0; c < pull.size(); ++c)
     if (sign[static_cast<std::size_t>(c)] > 0 && pull(c) < 0.0) return VectorXd::Constant(scales.size(), -HUGE_VAL);
-  // Along the principal axes of their information; parts within the span of the known columns add nothing.
+  // Along the principal axes of the columns' information; directions within the span of the known columns add nothing.
   constexpr double kOwnPart = 1e-9;
   const SymmetricSpectrum axes = symmetric_spectrum(own);
   const VectorXd along = axes.vectors.transpose() * pull;

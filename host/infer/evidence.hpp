@@ -1,14 +1,15 @@
-// Evidence of one hypothesis for measured rows: log p(y | columns), integrated over all unknowns.
+// Bayesian evidence of one hypothesis for measured rows: log p(y | columns), integrated over all unknowns.
 //
 //   y = sum_j theta_j column_j + memory + noise
 //   theta_j ~ N(0, deviation_j^2)                 prior from a data sheet or usual sizes
-//   memory  = smooth functions of some coordinates, one size a coordinate, found for each hypothesis
+//   memory  = smooth functions of some coordinates, one size per coordinate, estimated for each hypothesis
 //   noise   = drift, or drift and white noise (noise_colour.hpp), with Student-t innovations of 4 degrees of freedom
 //
-// The memory explains what no column does, so that no hypothesis wins only because it is closest to an unknown effect.
-// Linear parameters are integrated in closed form (Laplace's approximation at the weights of the t distribution).
-// Sources: D. MacKay, "Information Theory, Inference, and Learning Algorithms" (2003), ch. 27 and 28; Lange, Little,
-// Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989) 881-896, whose data want 4 degrees.
+// The memory models the part that no column explains (model discrepancy). Without it, a hypothesis could win only
+// because it is closest to an unknown effect. Linear parameters are integrated in closed form (Laplace's approximation
+// at the weights of the t distribution). Sources: D. MacKay, "Information Theory, Inference, and Learning Algorithms"
+// (2003), ch. 27 and 28; Lange, Little, Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989)
+// 881-896, whose data give 4 degrees of freedom.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -20,69 +21,70 @@
 
 namespace host {
 
-/// Columns of the memory over one coordinate, which share one size.
+/// Columns of the memory over one coordinate, with a common size.
 struct MemoryGroup {
   std::string coordinate;
   Eigen::Index first, count;
 };
 
-/// Smooth functions, as columns of hats between knots. Columns have size 1; `usual` is the scale of their factors.
+/// Smooth functions as columns of hat functions between knots. The columns have size 1; `usual` is the scale of their
+/// factors.
 struct Memory {
   Eigen::MatrixXd columns;
   std::vector<MemoryGroup> groups;
   double usual = 1.0;  ///< in the unit of y; a hundredth of it counts as zero
 };
 
-/// One fitted hypothesis: most probable sizes of memory and noise, parameters with their covariance.
+/// One fitted hypothesis: most probable sizes of memory and noise, and parameters with their covariance.
 struct EvidenceFit {
   double log_evidence = 0.0;   ///< ln p(y | hypothesis), nats
-  NoiseColour colour;          ///< of the noise from row to row
+  NoiseColour colour;          ///< correlation of the noise between rows
   double noise = 0.0;          ///< scale of the innovations, in the unit of y
-  Eigen::VectorXd sizes;       ///< of each memory group, in the unit of y
-  Eigen::VectorXd factors;     ///< of the hypothesis' columns
+  Eigen::VectorXd sizes;       ///< size of each memory group, in the unit of y
+  Eigen::VectorXd factors;     ///< factors of the hypothesis' columns
   Eigen::VectorXd remembered;  ///< part of every row that the memory explains
-  Eigen::VectorXd weights;     ///< of the whitened rows: 1/variance
+  Eigen::VectorXd weights;     ///< weights of the whitened rows: 1/variance
 
-  /// For further columns on top of these: whitened columns times their prior deviations, their information matrix's
-  /// factor, and the whitened residual.
+  /// For gains(), which adds further columns: whitened columns times their prior standard deviations, the Cholesky
+  /// factor of their information matrix, and the whitened residual.
   Eigen::MatrixXd whitened;
   Eigen::LLT<Eigen::MatrixXd> information;
   Eigen::VectorXd residual;
 };
 
-/// Starting point of a fit: the resulting sizes can be large or small, and the better fit is kept.
+/// Start of a fit. The sizes that result may be large or small, depending on the start; the better fit is kept.
 struct EvidenceStart {
   NoiseColour colour = {.drift = 0.5};
   Eigen::VectorXd sizes;
-  bool hold_sizes = false;  ///< the sizes are held
-  /// A fit whose log evidence is below this after three rounds, when further rounds change little, ends there, nats.
+  bool hold_sizes = false;  ///< true if the sizes stay fixed
+  /// Log evidence, nats. A fit ends if it is below this after three rounds and further rounds change little.
   double give_up = -HUGE_VAL;
 };
 
 class Evidence {
  public:
-  /// `least_noise`: of the sensors alone, in the unit of y, > 0.
+  /// `least_noise`: noise of the sensors alone, in the unit of y, > 0.
   Evidence(Eigen::VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise,
            NoiseKind kind = NoiseKind::drift);
 
-  /// Columns with the prior standard deviation (> 0) of each factor.
+  /// `deviations`: prior standard deviation of the factor of each column, > 0.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations, const EvidenceStart& start) const;
 
-  /// The better of two fits, from a large and a small memory.
+  /// The better of two fits, one starting with a large memory and one with a small memory.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations) const;
   EvidenceFit fit_from(const EvidenceFit& before, const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations,
                        double give_up = -HUGE_VAL) const;
 
-  /// Sizes without any memory.
+  /// Sizes for a fit without a memory.
   Eigen::VectorXd no_memory() const;
 
-  /// Gain of the log evidence by further columns of prior deviation 1, at the noise and the memory of `fit`, for each
-  /// of several common scales of these columns. `sign` of each column: +1 where its factor must not be negative, 0
-  /// where it may be; -HUGE_VAL for columns that pull the wrong way.
+  /// Gain of log evidence by further columns with prior standard deviation 1, with the noise and the memory of `fit`,
+  /// for each of several common scales of these columns. `sign` of each column: +1 if its factor must not be negative,
+  /// 0 if it may be. -HUGE_VAL if a factor has the wrong sign.
   Eigen::VectorXd gains(const EvidenceFit& fit, const Eigen::MatrixXd& further, const std::vector<int>& sign,
                         const Eigen::VectorXd& scales) const;
 
-  /// The innovations of each column along the rows' runs.
+  /// The innovations of each column along the runs of rows.
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, const NoiseColour& colour) const {
     return colour.whiten(columns, runs_);
   }

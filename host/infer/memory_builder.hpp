@@ -1,4 +1,4 @@
-// Smooth functions over coordinates, as the columns of a memory.
+// Builds smooth functions over coordinates as the columns of a memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,23 +9,23 @@
 
 namespace host {
 
-/// Knots from `low` to `high` (> low) with equal steps, or with a constant factor (low > 0). `count` >= 2.
+/// Knots from `low` to `high` (> low) with equal steps, or with equal ratios (low > 0). `count` >= 2.
 std::vector<double> even_knots(double low, double high, int count);
 std::vector<double> knots_by_factor(double low, double high, int count);
 
-/// Each knot's share in each row: piecewise linear functions that sum to 1, constant beyond the knots. At least two
-/// knots, ascending.
+/// Value of each knot's hat function in each row: piecewise linear functions that sum to 1 and are constant beyond the
+/// knots. Needs at least two knots, ascending.
 Eigen::MatrixXd hats(const Eigen::VectorXd& at, const std::vector<double>& knots);
 
-/// The part of the columns that the other columns do not explain. Without this, a memory could explain the same as the
-/// model and mask it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
+/// The part of the columns that the other columns do not explain. Without this step, a memory could explain the same as
+/// the model and mask it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
 Eigen::MatrixXd beside(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& others);
 
 class MemoryBuilder {
  public:
-  /// Adds a group without the columns that are zero.
+  /// Adds a group, without columns that are zero.
   void add(std::string coordinate, const Eigen::MatrixXd& columns);
-  /// `usual`: size to which the factors compare, in the unit of y.
+  /// `usual`: typical size of the factors, in the unit of y.
   Memory take(double usual);
 
  private:

@@ -11,7 +11,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// A larger value is almost a permanent step, so only the differences of rows would count.
+/// With a larger value the drift would be a random walk, and only the differences of rows would matter.
 constexpr double kMostDrift = 0.98;
 
 double squares(const NoiseColour& colour, const VectorXd& noise, const VectorXd& weights,
@@ -19,7 +19,7 @@ double squares(const NoiseColour& colour, const VectorXd& noise, const VectorXd&
   return weights.dot(colour.whiten(noise, runs).col(0).cwiseAbs2());
 }
 
-/// In closed form.
+/// The best drift without white noise, in closed form.
 NoiseColour drift_of(const VectorXd& noise, const VectorXd& weights, const std::vector<RowRun>& runs) {
   double product = 0.0, square = 1e-300;
   for (const RowRun& run : runs)
@@ -65,8 +65,8 @@ NoiseColour colour_of(NoiseKind kind, const VectorXd& noise, const VectorXd& wei
     best = one;
     return true;
   };
-  // The sum is flat along drift = white and may have two local minima, so it is searched on a grid and then with halved
-  // steps from the best point.
+  // The sum is flat along drift = white and may have two local minima. So it is searched on a grid, and then with
+  // halved steps from the best point.
   for (const double drift : {0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98})
     for (const double part : {0.0, 0.3, 0.6, 0.8, 0.9}) try_at(drift, part * drift);
   for (double step = 0.1; step > 0.002; step *= 0.5)

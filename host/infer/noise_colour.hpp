@@ -13,20 +13,20 @@
 
 namespace host {
 
-/// Rows [first, end) are consecutive: the noise is correlated through them.
+/// Rows [first, end) are consecutive, so their noise is correlated.
 struct RowRun {
   Eigen::Index first, end;
 };
 
 struct NoiseColour {
-  double drift = 0.0;  ///< phi: part of the drift that remains after a row, 0 to 0.98
-  double white = 0.0;  ///< psi: 0 without white noise, phi if all noise is white
+  double drift = 0.0;  ///< phi: part of the drift that remains one row later, 0 to 0.98
+  double white = 0.0;  ///< psi: 0 if there is no white noise, phi if all noise is white
 
-  /// Correlation of one row with the next.
+  /// Correlation between one row and the next.
   double from_row_to_row() const {
     return (drift - white) * (1.0 - drift * white) / (1.0 - 2.0 * drift * white + white * white);
   }
-  /// The innovations' deviation over that of the noise, 0 to 1.
+  /// Standard deviation of the innovations over that of the noise, 0 to 1.
   double innovation() const;
 
   /// The innovations of each column along the runs.
@@ -36,7 +36,7 @@ struct NoiseColour {
 /// The candidate colours of the noise.
 enum class NoiseKind { drift, drift_and_white };
 
-/// The colour with the smallest innovations, by squares with these weights of the rows.
+/// The colour with the smallest weighted sum of squared innovations.
 NoiseColour colour_of(NoiseKind kind, const Eigen::VectorXd& noise, const Eigen::VectorXd& weights,
                       const std::vector<RowRun>& runs);
 

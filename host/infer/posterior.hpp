@@ -1,4 +1,4 @@
-// Converts log evidence to probabilities, and these to claims.
+// Converts log evidence to probabilities, and decides which effects to name.
 #pragma once
 
 #include <algorithm>
@@ -8,24 +8,24 @@
 
 namespace host {
 
-/// Least probability of named effects together: a wrong name sends a mechanic to the wrong part, which costs some
-/// twenty times as much as another record.
+/// Least probability that all named effects are present. A wrong name sends a mechanic to the wrong part, which costs
+/// some twenty times as much as another record.
 inline constexpr double kClaimed = 0.95;
-/// Least part of the remaining squared error on held-back records that the first named effect must explain: with less,
-/// the error itself (its root) falls by less than 5 %, which is not noticeable on the machine.
+/// Least part of the remaining squared error on held-back records that the first named effect must explain. With less,
+/// the RMS error would fall by less than 5 %, which is not noticeable on the machine.
 inline constexpr double kWorthNaming = 0.1;
-/// The same for the squared error of the base: after the first effect, a tenth of the error is not noticeable.
+/// Least part of the squared error of the base that an effect must also explain.
 inline constexpr double kWorthOfAll = 0.01;
-/// Unless it explains the larger part of the remaining error.
+/// An effect that explains at least this part of the remaining squared error is also worth naming.
 inline constexpr double kWorthOfLeft = 0.5;
-/// Whether an effect that takes an error (RMS, any unit) from `before` to `after` is to be named, where the base alone
-/// leaves `base`: what is certain need not be important.
+/// Whether an effect that reduces an error (RMS, any unit) from `before` to `after` is large enough to be named.
+/// `base`: error of the base alone. An effect can be certain but unimportant.
 inline bool is_worth_naming(double before, double after, double base) {
   const double left = before * before, taken = left - after * after;
   return taken >= kWorthOfLeft * left || (taken >= kWorthNaming * left && taken >= kWorthOfAll * base * base);
 }
 
-/// Prior: that nothing (more) is missing is as probable as that something is.
+/// Prior probability that nothing (more) is missing.
 inline constexpr double kNothingMore = 0.5;
 
 /// Probability for these log odds, nats.

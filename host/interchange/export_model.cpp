@@ -26,7 +26,7 @@ std::set<std::string> expressed_by(ExportTarget target) {
   }
 }
 
-/// The share of the squared effort by which two models differ on a record.
+/// The share of the squared torque or force by which two models differ on a record.
 std::optional<double> share_of(const sim::DriveDescription& whole, const sim::DriveDescription& part,
                                const Record* record) {
   if (record == nullptr) return std::nullopt;
@@ -52,7 +52,7 @@ sim::DriveDescription without(const sim::DriveDescription& model, std::string_vi
   return part;
 }
 
-/// The model without the effects that have no inverse; the others show the size of the rest.
+/// The model without the effects that have no inverse. With it, the size of the other effects can be computed.
 sim::DriveDescription invertible(const sim::DriveDescription& model) {
   sim::DriveDescription part = model;
   part.effects.clear();

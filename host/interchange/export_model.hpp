@@ -1,4 +1,5 @@
-// Models for other programs, with the effects that these cannot express, and the resulting error on a record.
+// Exports models to other programs, with the list of effects that these cannot express and the resulting error on a
+// record.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,7 +20,7 @@ std::optional<ExportTarget> export_target(std::string_view name);
 
 struct NotExpressed {
   std::string kind;
-  std::optional<double> share;  ///< of the record's squared effort; empty: no record, or the effort does not show it
+  std::optional<double> share;  ///< of the squared torque or force; empty if it is not known
 };
 
 struct ExportedFile {
@@ -32,14 +33,14 @@ struct Export {
   std::vector<NotExpressed> not_expressed;
 };
 
-/// `path` is the file to write; LinuxCNC gets further ones beside it. `record`, adapted to the model, gives the error
-/// of leaving these effects out. Throws Failure(bad_input) if the record is too short for the filter.
+/// `path`: the file to write; LinuxCNC gets further files beside it. `record`, adapted to the model, gives the error of
+/// leaving these effects out. Throws Failure(bad_input) if the record is too short for the filter.
 Export export_model(const sim::DriveDescription& model, ExportTarget target, const std::string& path,
                     const Record* record);
 
 nlohmann::json to_json(const Export& exported);
 
-/// The model as text in each format. `notes` are lines without a comment sign, which become comments at the start.
+/// The model as text in each format. `notes` are lines without a comment sign; they become comments at the start.
 std::string c_header(const PortableModel& model, const std::vector<std::string>& notes);
 std::string python_module(const PortableModel& model, const std::vector<std::string>& notes);
 std::string modelica_model(const PortableModel& model, const std::vector<std::string>& notes);
@@ -49,7 +50,7 @@ std::string hal_lines(const PortableModel& model, const std::string& component);
 std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 std::string urdf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 
-/// Friction as MJCF and URDF know it: one viscous coefficient and one level for both directions.
+/// Friction as in MJCF and URDF: one viscous coefficient and one level for both directions.
 struct SymmetricFriction {
   double viscous = 0.0, level = 0.0;
 };

@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// Syntax of a language for the parts.
+/// Syntax of the parts in a language.
 struct Language {
   std::string_view exp, pow, sin, cos;
 };
@@ -216,7 +216,7 @@ std::string hal_component(const PortableModel& model, const std::string& compone
 
 namespace {
 
-/// halcompile names pins with '-' for '_', and without a "hal_" in front or signs at the end.
+/// halcompile writes '-' for '_' in names of pins, without a leading "hal_" and without signs at the end.
 std::string hal_name(std::string_view component) {
   constexpr std::string_view kFront = "hal_";
   std::string name(component.substr(component.starts_with(kFront) ? kFront.size() : 0));
@@ -228,7 +228,7 @@ std::string hal_name(std::string_view component) {
 }  // namespace
 
 std::string hal_lines(const PortableModel& model, const std::string& component) {
-  constexpr std::string_view kLetters = "xyzabcuvw";  // in the order in which trivkins counts joints
+  constexpr std::string_view kLetters = "xyzabcuvw";  // in the order of joints in trivkins
   const std::size_t known = model.name.size() == 1 ? kLetters.find(model.name.front()) : std::string_view::npos;
   const std::size_t joint = known == std::string_view::npos ? 0 : known;
   const double per_volt = model.data.effort_per_volt();

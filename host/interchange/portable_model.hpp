@@ -31,17 +31,17 @@ struct PortableModel {
   std::optional<FrictionBend> bend;
   double constant = 0.0;  ///< added to the motor's effort, Nm or N
   std::vector<PeriodicTorque> cogging;
-  double stiffness = 0.0, centre = 0.0;  ///< of spring_torque: -stiffness (x - centre)
+  double stiffness = 0.0, centre = 0.0;  ///< spring_torque: -stiffness (x - centre)
 
   bool rotary() const { return data.kind == sim::DriveKind::rotary; }
-  /// Friction at a speed, signed like it; 0 at rest.
+  /// Friction at a speed, with the sign of the speed; 0 at rest.
   double friction_at(double speed) const;
   double slope_at(double speed) const;
-  /// Torque or force on the motor other than friction, at a travel in mm or m.
+  /// Torque or force on the motor at a travel in mm or m, without friction.
   double load_at(double x) const;
 };
 
-/// The part that every program with formulas can express.
+/// The effects that every program with formulas can express.
 const std::set<std::string>& portable_kinds();
 
 PortableModel portable(const sim::DriveDescription& model);

@@ -1,4 +1,4 @@
-// MJCF and URDF: a joint with one level and one viscous coefficient.
+// MJCF and URDF: a joint with one friction level and one viscous coefficient.
 #include <fmt/format.h>
 
 #include "host/interchange/export_model.hpp"
@@ -17,15 +17,15 @@ std::string xml_comment(const std::vector<std::string>& notes) {
   return text + "-->\n";
 }
 
-/// The control at which the converter saturates, A, or Nm or N where no motor constant is known.
+/// The control value at which the converter saturates: A, or Nm or N if no motor constant is known.
 std::string control_range(const sim::DataSheet& data, double gear) {
   if (is_known_by_current(data) || !(data.dac_limit_V > 0.0)) return {};
   const double most = data.dac_limit_V * data.effort_per_volt() / gear;
   return fmt::format(" ctrllimited=\"true\" ctrlrange=\"{:.17g} {:.17g}\"", -most, most);
 }
 
-/// MuJoCo reverses its dry friction within a speed of acceleration times a time constant: 20 ms by default; the minimum
-/// is two steps (its manual, "Solver parameters").
+/// MuJoCo reverses its dry friction within a speed of acceleration times a time constant. The default is 20 ms, the
+/// minimum two steps (its manual, "Solver parameters").
 std::string sharp_friction(double step_s) {
   return fmt::format(" solreffriction=\"{:.17g} 1\" solimpfriction=\"0.99 0.99 0.001\"", 2.0 * step_s);
 }
@@ -40,7 +40,7 @@ SymmetricFriction symmetric(const PortableModel& model) {
 std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes) {
   const SymmetricFriction friction = symmetric(model);
   const std::string name = identifier(model.name);
-  // Coordinates are rad or m; the model's values per mm are multiplied by the lead to be per rad.
+  // Coordinates are in rad or m. The model's values per mm are multiplied by the lead to become values per rad.
   const double lead = model.rotary() ? model.data.lead : 1.0;
   std::string spring;
   if (model.stiffness != 0.0)

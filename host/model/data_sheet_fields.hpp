@@ -16,24 +16,24 @@ enum class Presence {
 };
 
 struct DataSheetField {
-  std::string_view table;  ///< "" for [drive] itself, else the name of its sub-table
+  std::string_view table;  ///< "" for [drive], else the name of its sub-table
   std::string_view key;
-  std::optional<sim::DriveKind> only;  ///< the only kind of drive that has it; empty: both
+  std::optional<sim::DriveKind> only;  ///< the only kind of drive that has it; empty for both
   double sim::DataSheet::*value;
-  bool zero_allowed;  ///< all are physical quantities and never negative
+  bool zero_allowed;  ///< no field may be negative
   Presence presence;
-  std::string_view meaning;  ///< with the place of its value in a manufacturer's data sheet
-  double divisor = 1.0;      ///< from the key's unit to the data sheet's
+  std::string_view meaning;  ///< says where to find the value in a manufacturer's data sheet
+  double divisor = 1.0;      ///< from the unit of the key to that of sim::DataSheet
 
   bool belongs_to(sim::DriveKind kind) const { return !only || *only == kind; }
 };
 
-/// In the order in which they are written.
+/// The fields in the order in which they are written.
 inline constexpr DataSheetField kDataSheetFields[] = {
     {"", "amplifier_gain_A_per_V", sim::DriveKind::rotary, &sim::DataSheet::amplifier_gain_A_per_V, false,
      Presence::of_volts, "Ka, A/V: the amplifier's current limit over its command range"},
     {"", "torque_constant_Nm_per_A", sim::DriveKind::rotary, &sim::DataSheet::torque_constant_Nm_per_A, false,
-     Presence::required, "Kt, Nm/A: the motor's data sheet; per A rms where the log is in A rms"},
+     Presence::required, "Kt, Nm/A: the motor's data sheet; per A rms if the log is in A rms"},
     {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required,
      "mm/rad: travel per motor turn over 2 pi (10 mm per turn: 1.5915)"},
     {"", "force_constant_N_per_V", sim::DriveKind::linear, &sim::DataSheet::force_constant_N_per_V, false,
@@ -60,7 +60,7 @@ inline constexpr DataSheetField kDataSheetFields[] = {
      &sim::DataSheet::dac_limit_V,
      false,
      Presence::of_volts,
-     "V: its range is -limit to +limit, default 10"},
+     "V: the converter's range is -limit to +limit; default 10"},
     {"encoder", "resolution_mm", sim::DriveKind::rotary, &sim::DataSheet::encoder_resolution, true, Presence::optional,
      "mm: travel of one count (10 mm per turn, 65536 counts: 1.526e-4)"},
     {"encoder", "resolution_m", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true, Presence::optional,
@@ -74,27 +74,27 @@ inline constexpr DataSheetField kDataSheetFields[] = {
     {"load_encoder", "resolution_mm", sim::DriveKind::linear, &sim::DataSheet::load_encoder_resolution, false,
      Presence::alternative_unit, "mm: the same, instead of resolution_m", 1000.0},
     {"load_encoder", "cyclic_error_mm", sim::DriveKind::rotary, &sim::DataSheet::load_encoder_cyclic_error, true,
-     Presence::optional, "mm: amplitude of the scale's error within its period"},
+     Presence::optional, "mm: amplitude of the scale's cyclic error"},
     {"load_encoder", "cyclic_error_m", sim::DriveKind::linear, &sim::DataSheet::load_encoder_cyclic_error, true,
-     Presence::optional, "m: amplitude of the scale's error within its period"},
+     Presence::optional, "m: amplitude of the scale's cyclic error"},
     {"load_encoder", "cyclic_period_mm", sim::DriveKind::rotary, &sim::DataSheet::load_encoder_cyclic_period, false,
-     Presence::optional, "mm: that period, the scale's grating in most cases (0.02)"},
+     Presence::optional, "mm: period of this error, usually that of the scale's grating (0.02)"},
     {"load_encoder", "cyclic_period_m", sim::DriveKind::linear, &sim::DataSheet::load_encoder_cyclic_period, false,
-     Presence::optional, "m: that period, the scale's grating in most cases (2e-5)"},
+     Presence::optional, "m: period of this error, usually that of the scale's grating (2e-5)"},
     {"load_encoder",
      "cyclic_phase_rad",
      {},
      &sim::DataSheet::load_encoder_cyclic_phase_rad,
      true,
      Presence::optional,
-     "rad: the error is largest where the table's travel is this part of a period, over 2 pi; 0 by default"},
+     "rad: phase of the period at which the error is largest; 0 by default"},
     {"load_encoder", "offset_mm_per_K", sim::DriveKind::rotary, &sim::DataSheet::load_encoder_offset_per_K, true,
-     Presence::optional, "mm/K: by which its zero moves with the record's temp_C"},
+     Presence::optional, "mm/K: shift of the scale's zero per kelvin of the record's temp_C"},
     {"load_encoder", "offset_m_per_K", sim::DriveKind::linear, &sim::DataSheet::load_encoder_offset_per_K, true,
-     Presence::optional, "m/K: by which its zero moves with the record's temp_C"},
+     Presence::optional, "m/K: shift of the scale's zero per kelvin of the record's temp_C"},
 };
 
-/// Variance of the tachometer's noise: the one field that the data sheet itself may lack.
+/// Variance of the tachometer's noise: the only field that sim::DataSheet may lack.
 constexpr std::string_view tach_noise_key(sim::DriveKind kind) {
   return kind == sim::DriveKind::rotary ? "noise_variance_rad2_s2" : "noise_variance_m2_s2";
 }

@@ -1,4 +1,4 @@
-// Effects whose parameters may be given per direction or once for both.
+// Effects whose parameters may be given per direction, or once for both directions.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace host {
 
-/// The ids that a common parameter of both directions sets ("positive negative" -> two ids).
+/// The ids that a common parameter for both directions sets ("positive negative" -> two ids).
 std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both);
 
-/// A drive may have several effects of one kind: each has a period or a time of its own.
+/// Whether a drive may have several effects of this kind, each with its own period or time.
 bool may_repeat(const sim::EffectInfo& info);
 
 /// Key of the standard deviations of a free curve's values, one per value.
@@ -23,10 +23,10 @@ constexpr std::string_view curve_deviation_key(sim::DriveKind kind) {
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();
 
-/// Throws Failure(usage), naming the closest kind, if the catalogue has none of this name.
+/// Throws Failure(usage), with the most similar kind, if the catalogue has no kind of this name.
 const sim::EffectInfo& known_effect(std::string_view kind);
 
-/// Whether an interval belongs to this value, that is, contains it up to the rounding of its ends.
+/// Whether an interval belongs to this value, that is, contains it within the rounding of its ends.
 bool holds(const std::array<double, 2>& interval, double value);
 
 }  // namespace host

@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-/// Entry and id of every parameter under that key.
+/// Entry and id of every parameter with that key.
 std::vector<std::pair<sim::EffectEntry*, std::string>> found(sim::DriveDescription& model, const std::string& name,
                                                              std::string_view option) {
   const std::size_t dot = name.find('.');

@@ -29,7 +29,7 @@ constexpr std::string_view kFormat = "axis-model/1";
 constexpr std::string_view kIntervalSuffix = "_ci95";
 constexpr std::string_view kHeldSuffix = "_held";
 constexpr std::string_view kDeviationSuffix = "_sd";
-constexpr std::string_view kGivenSuffix = "_given";  ///< the prior's mean, if a fit has changed the value
+constexpr std::string_view kGivenSuffix = "_given";  ///< mean of the prior, if a fit has changed the value
 constexpr std::string_view kHarmonics = "harmonics";
 constexpr std::string_view kForcePerVolt = "force_constant_N_per_V", kForcePerAmpere = "force_constant_N_per_A";
 
@@ -83,7 +83,7 @@ class ModelReader {
     return real->get();
   }
 
-  /// A sub-table, or nullptr when it is absent.
+  /// A sub-table; null if it is absent.
   const toml::table* table_at(const toml::table& parent, std::string_view key) const {
     const toml::node* node = parent.get(key);
     if (node != nullptr && !node->is_table())
@@ -118,7 +118,7 @@ class ModelReader {
            unit);
   }
 
-  /// Names all missing fields at once. If the kind is missing, it is inferred from the present fields.
+  /// Names all missing fields in one message. If the kind is missing, it is inferred from the present fields.
   void require_fields(const toml::table& drive) const {
     std::vector<std::string> missing;
     const bool speaks_of_force = drive.contains(kForcePerVolt) || drive.contains(kForcePerAmpere);
@@ -139,7 +139,7 @@ class ModelReader {
          fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them");
   }
 
-  /// Torque or force is known only for the current, so a volt stands for an ampere, without a limit.
+  /// Torque or force is given only per ampere, so the command is in amperes and has no limit.
   void take_current_alone(const toml::table& drive) {
     if (const toml::node* dac = drive.get("dac"))
       fail(line_of(*dac),
@@ -242,7 +242,7 @@ class ModelReader {
     model_.effects.push_back(std::move(entry));
   }
 
-  /// Fields that may accompany each of these values.
+  /// Fields that each of these values may have.
   static std::vector<std::string> fields_beside(const Names& keys) {
     std::vector<std::string> fields;
     for (const std::string_view key : keys)
@@ -285,7 +285,7 @@ class ModelReader {
     return numbers;
   }
 
-  /// A curve: `over`, `knots`, values, and the standard deviations of these where they are known.
+  /// A curve: `over`, `knots`, the values, and their standard deviations if they are known.
   void read_curve(const toml::table& table, const sim::EffectInfo& info, sim::EffectEntry& entry) const {
     entry.over = text_at(table, "over", "[[effect]] free_curve", true);
     if (std::ranges::find(sim::kCurveCoordinates, entry.over) == std::end(sim::kCurveCoordinates))
@@ -314,7 +314,7 @@ class ModelReader {
     }
   }
 
-  /// The orders of a period, if given as a list instead of as one pair.
+  /// The orders of a period, if they are given as a list instead of a single pair.
   void read_harmonics(const toml::table& table, const sim::EffectInfo& info, sim::EffectEntry& entry) const {
     const toml::node* node = table.get(kHarmonics);
     if (node == nullptr) return;
@@ -388,7 +388,7 @@ class ModelReader {
     return interval;
   }
 
-  /// Every parameter must be there, in one of the forms that the effect knows.
+  /// Every parameter must be present, in one of the forms that the effect allows.
   void require_parameters(const toml::table& table, const sim::EffectInfo& info, const sim::EffectEntry& entry) const {
     for (const sim::ParameterInfo& parameter : info.parameters) {
       if (!parameter.pair_of.empty())

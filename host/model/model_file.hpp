@@ -1,4 +1,4 @@
-// Model files (`axis-model/1`, TOML): a drive's data sheet and its list of effects, with intervals and origins.
+// Model files (`axis-model/1`, TOML): the data sheet of a drive and its list of effects, with intervals and origins.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 
 namespace host {
 
-/// Whether a reader refuses values outside their physical bounds, or accepts them for doubts_of() to report.
+/// Whether the reader rejects values outside their physical bounds, or accepts them so that doubts_of() can report
+/// them.
 enum class Bounds { enforced, examined_later };
 
-/// Reads a model. Throws Failure(bad_input) naming file, line, field and remedy; an unknown field is an error too, and
-/// so is an interval that does not contain its value.
+/// Reads a model. Throws Failure(bad_input) with file, line, field and remedy. An unknown field is an error, and so is
+/// an interval that does not contain its value.
 sim::DriveDescription read_model(const std::string& path, Bounds bounds = Bounds::enforced);
 
 /// Reads the data sheet of a drive: a model file whose effects may be absent.
@@ -22,11 +23,11 @@ sim::DriveDescription read_drive(const std::string& path);
 sim::DriveDescription parse_model(std::string_view text, std::string_view name, Bounds bounds = Bounds::enforced);
 sim::DriveDescription parse_drive(std::string_view text, std::string_view name);
 
-/// Writes a model beside its destination, fsyncs, renames. Reading it again gives the same numbers to the last bit, and
-/// the effects in the same order. Throws Failure(bad_input) when it cannot.
+/// Writes a model to a temporary file beside its destination, calls fsync and renames it. Reading it again gives
+/// exactly the same numbers, and the effects in the same order. Throws Failure(bad_input) if it cannot.
 void write_model(const sim::DriveDescription& model, const std::string& path);
 
-/// The text of write_model. Throws Failure(bad_input) where an effect or parameter is not in the catalogue.
+/// The text that write_model() writes. Throws Failure(bad_input) if an effect or parameter is not in the catalogue.
 std::string format_model(const sim::DriveDescription& model);
 
 }  // namespace host

@@ -18,7 +18,7 @@ std::string_view meaning_of(std::string_view key) {
   return std::ranges::find(kDataSheetFields, key, &DataSheetField::key)->meaning;
 }
 
-/// "key = value", or the same as a comment with nothing behind it.
+/// "key = value"; if there is no value, a comment to be completed.
 std::string field(std::string_view key, const std::optional<double>& value = std::nullopt) {
   const std::string line = value ? fmt::format("{} = {:.12g}", key, *value) : fmt::format("# {} = ", key);
   return fmt::format("{:<44}# {}\n", line, meaning_of(key));
@@ -47,7 +47,7 @@ std::string sheet_text(const SheetValues& values) {
       rotary ? "kind = \"rotary\"" : "kind = \"linear\"", rotary ? "turning" : "linear");
   if (rotary) {
     text += field("torque_constant_Nm_per_A", values.motor_constant);
-    // A log of the current gives the motor current directly: the amplifier's gain is not needed.
+    // A log of the current needs no amplifier gain.
     if (!values.by_current) text += field("amplifier_gain_A_per_V");
     text += field("lead_mm_per_rad", lead(values));
   } else {
@@ -84,7 +84,7 @@ struct SheetExample {
   sim::DriveDescription drive;
 };
 
-/// Typical drives: a ball screw of 10 mm a turn, and a linear motor with a scale of 1 um.
+/// Typical drives: a ball screw with 10 mm per turn, and a linear motor with a scale of 1 um.
 std::vector<SheetExample> examples() {
   sim::DriveDescription screw, motor;
   screw.name = std::string("x");

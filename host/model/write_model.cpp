@@ -21,7 +21,7 @@ namespace host {
 
 namespace {
 
-/// The shortest text that reads back as the same number, and that TOML takes for a float.
+/// The shortest text that gives the same number when it is read, and that is a float in TOML.
 std::string number(double value) {
   if (!std::isfinite(value))
     throw Failure(ExitCode::bad_input, "a model value is not a finite number: the fit that made it has failed");
@@ -47,10 +47,10 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
     fmt::format_to(out, "\n[drive.tach]\n{} = {}\n", tach_noise_key(data.kind), number(*data.tach_noise_variance));
 }
 
-/// A parameter's value and the fields that accompany it: "J_kg_m2 = 0.1", "J_kg_m2_ci95 = [0.09, 0.11]", …
+/// The value of a parameter and its additional fields: "J_kg_m2 = 0.1", "J_kg_m2_ci95 = [0.09, 0.11]", …
 std::vector<std::string> fields_of(const sim::EffectEntry& entry, const std::string& id, std::string_view key) {
   std::vector<std::string> fields = {fmt::format("{} = {}", key, number(entry.at(id)))};
-  // An interval that does not hold the value belongs to an earlier fit.
+  // An interval that does not contain the value is from an earlier fit.
   if (const auto interval = entry.ci95.find(id); interval != entry.ci95.end() && holds(interval->second, entry.at(id)))
     fields.push_back(fmt::format("{}_ci95 = [{}, {}]", key, number(interval->second[0]), number(interval->second[1])));
   if (entry.held.contains(id)) fields.push_back(fmt::format("{}_held = true", key));
@@ -62,7 +62,7 @@ std::vector<std::string> fields_of(const sim::EffectEntry& entry, const std::str
   return fields;
 }
 
-/// `harmonics = [ … ]`, one order a line.
+/// `harmonics = [ … ]`, with one order per line.
 void append_harmonics(const sim::EffectEntry& entry, const sim::EffectInfo& info, sim::DriveKind kind,
                       std::string& text) {
   text += "harmonics = [\n";

@@ -16,8 +16,8 @@ namespace {
 /// Least correlation of a matching pair of position and speed.
 constexpr double kPair = 0.95;
 
-/// The relative error of a scale found from set points: the smallest, and that of six simulated machines with PI
-/// control (at most 2.3e-3, except for single sweeps).
+/// Relative error of a scale that was found from set points: the smallest value, and that of six simulated machines
+/// with PI control (at most 2.3e-3, except for single sweeps).
 constexpr double kScaleTolerance = 3e-4, kFollowingError = 4e-3;
 
 bool is_angular(const ChannelName& name) { return name.unit && name.unit->dimension == Dimension::angular_speed; }
@@ -60,7 +60,7 @@ const NamedChannel* AxisStudy::pick(Quantity quantity, bool reference, bool seco
   std::string names;
   for (const NamedChannel* channel : equal) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", quoted(*channel));
-    leave(*channel, fmt::format("one of several that may be the {}", quantity_name(quantity)), 0.3);
+    leave(*channel, fmt::format("one of several possible channels for the {}", quantity_name(quantity)), 0.3);
   }
   ask(fmt::format("{}which is the {}: {}? Name it by --map", axis_->name.empty() ? "" : axis_->name + ": ",
                   quantity_name(quantity), names));
@@ -85,10 +85,10 @@ void AxisStudy::take(const NamedChannel& channel, Decision decision) {
   Mapping mapping{decision.column, column.name, column.time == axis_->stamps ? "" : column.time, decision.factor,
                   decision.offset};
   if (mapping.source.empty()) mapping.source = fmt::format("#{}", channel.column + 1);
-  const bool is_open = may_slide_ && channel.name.sliding_unit;  // one question for all of a joint
+  const bool is_open = may_slide_ && channel.name.sliding_unit;  // all channels of a joint share one question
   if (is_open) out.sure = std::min(out.sure, kAssumed);
   if (decision.sure < kSureEnough && !is_open)
-    ask(fmt::format("{}{}: {} ({})? Else say --map {}=…", axis_->name.empty() ? "" : axis_->name + ": ",
+    ask(fmt::format("{}{}: {} ({})? If not, give --map {}=…", axis_->name.empty() ? "" : axis_->name + ": ",
                     quoted(channel), mapping_text(mapping), decision.why, decision.column));
   axis_->mappings.push_back(std::move(mapping));
 }
@@ -114,7 +114,7 @@ bool AxisStudy::looks_rotary() const {
   });
 }
 
-/// The median of several logs: a sweep may miss its commanded amplitudes.
+/// The median over several logs, because a single sweep may miss its commanded amplitudes.
 std::optional<Proportion> AxisStudy::best_follow(std::size_t measured, std::size_t reference) const {
   std::vector<Proportion> all;
   for (const Log* log : group_)
@@ -183,7 +183,7 @@ std::optional<AxisStudy::Decision> AxisStudy::unit_by_speed(const NamedChannel& 
   const UnitMeaning unit = *speed_->name.unit;
   const auto found = best_change(channel.column, speed_->column);
   if (!found || found->r_squared < kPair || found->factor == 0.0) return std::nullopt;
-  const double per_unit = unit.factor / found->factor;  // of one of the position's steps, in rad or mm
+  const double per_unit = unit.factor / found->factor;  // size of one step of the position, in rad or mm
   if (unit.dimension == Dimension::angular_speed) {
     if (const auto neat = neat_angle(per_unit))
       return Decision{"x_mm", neat->value * lead(), 0.0, kSureByPhysics,
@@ -235,7 +235,7 @@ void AxisStudy::settle_position() {
   take(*position_, *decision);
 }
 
-/// The table's own sensor: no record needs one, so an uncertain one is left out without a question.
+/// The table's own sensor. No record needs one, so a doubtful one is left out without a question.
 void AxisStudy::settle_table_position() {
   if (!position_taken_) return;
   const NamedChannel* table = nullptr;
@@ -249,22 +249,22 @@ void AxisStudy::settle_table_position() {
     leave(*table, fmt::format("a second position that does not follow {}", quoted(*position_)), 0.5);
     return;
   }
-  const double shown = position_taken_->factor / found->factor;  // mm a step, by the motor's position
-  constexpr double kSameWay = 0.05;                              // backlash, wind-up and pitch errors are far less
+  const double shown = position_taken_->factor / found->factor;  // mm per step, by the motor's position
+  constexpr double kSameWay = 0.05;                              // backlash, wind-up and pitch errors are much smaller
   const auto by_unit =
       table->name.unit && table->name.unit->dimension == Dimension::length ? position_by_unit(*table) : std::nullopt;
   const auto neat = neat_length(std::abs(shown));
   const double size = by_unit ? by_unit->factor : neat ? neat->value : 0.0;
   if (!(size > 0.0) || std::abs(std::abs(shown) / size - 1.0) > kSameWay) {
     leave(*table,
-          fmt::format("the table's position: a step of it is {:.6g} mm by {}; say --map x2_mm={}*MM_PER_STEP", shown,
-                      quoted(*position_), source_text(log_.columns[table->column].name)),
+          fmt::format("the table's position: its step is {:.6g} mm according to {}; give --map x2_mm={}*MM_PER_STEP",
+                      shown, quoted(*position_), source_text(log_.columns[table->column].name)),
           0.6);
     return;
   }
   take(*table, {"x2_mm", std::copysign(size, shown), 0.0, by_unit ? kSureByUnit : kSureByPhysics,
-                fmt::format("the table by a sensor of its own, {}{}", by_unit ? by_unit->why : neat->words,
-                            shown < 0.0 ? ", counting the other way" : "")});
+                fmt::format("the table by its own sensor, {}{}", by_unit ? by_unit->why : neat->words,
+                            shown < 0.0 ? ", with the opposite sign" : "")});
 }
 
 void AxisStudy::settle_speed() {
@@ -381,7 +381,7 @@ void AxisStudy::leave_rest() {
     else if (is_constant(column.values))
       leave(channel, "never changes", 0.9);
     else if (channel.name.quantity == Quantity::unknown)
-      leave(channel, "not understood; kept out", 0.0);
+      leave(channel, "not recognised; left out", 0.0);
     else
       leave(channel,
             fmt::format("{}{}; not needed", channel.name.is_reference ? "wanted " : "",

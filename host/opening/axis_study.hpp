@@ -10,10 +10,10 @@
 
 namespace host {
 
-/// Confidence of a channel: named with a unit, found by the motion's physics, or assumed.
+/// Confidence in a channel: it has a name with a unit, the physics of the motion confirms it, or it is assumed.
 inline constexpr double kSureByUnit = 0.97, kSureByPhysics = 0.93, kAssumed = 0.6;
 
-/// A column of the log with the meaning of its name.
+/// A column of the log and the meaning of its name.
 struct NamedChannel {
   std::size_t column = 0;
   ChannelName name;
@@ -24,13 +24,13 @@ class AxisStudy {
   AxisStudy(const std::vector<const Log*>& group, const Log& log, const OpeningHints& hints, double period_s)
       : group_(group), log_(log), hints_(hints), period_s_(period_s) {}
 
-  /// Decides on the meaning of `channels`, which belong to one axis, and writes the result into `found` and
-  /// `channels_out` (one entry for each column of the log).
+  /// Determines the meaning of `channels`, which belong to one axis. Writes the result to `found` and `channels_out`
+  /// (one entry for each column of the log).
   void run(std::vector<NamedChannel> channels, OpenedAxis& axis, Understanding& found);
 
  private:
   struct Decision {
-    std::string column;  ///< of the record
+    std::string column;  ///< column of the record
     double factor = 1.0, offset = 0.0, sure = 0.0;
     std::string why;
   };
@@ -71,7 +71,7 @@ class AxisStudy {
   std::vector<bool> settled_;
   OpenedAxis* axis_ = nullptr;
   Understanding* found_ = nullptr;
-  bool may_slide_ = false;  ///< of a joint: assumed to turn, with a question to the user
+  bool may_slide_ = false;  ///< for a joint: assumed to turn, with a question to the user
   const NamedChannel *position_ = nullptr, *speed_ = nullptr, *effort_ = nullptr;
   std::optional<Decision> position_taken_;
 };

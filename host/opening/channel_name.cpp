@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// Meanings of a word, as bits: a compound word ("drehzahlsollwert") has several.
+/// Meanings of a word as bits, because a compound word ("drehzahlsollwert") has several.
 enum Sense : unsigned {
   kTime = 1U << 0U,
   kPosition = 1U << 1U,
@@ -26,7 +26,7 @@ enum Sense : unsigned {
   kReference = 1U << 9U,
   kMeasured = 1U << 10U,
   kSecond = 1U << 11U,
-  kNotTheMotor = 1U << 12U,  ///< d axis, supply, bus: a current or voltage that makes no torque
+  kNotTheMotor = 1U << 12U,  ///< d axis, supply, bus: a current or voltage that produces no torque
   kMakesTorque = 1U << 13U,
   kWeak = 1U << 14U,
   kAxis = 1U << 15U,  ///< a number or letter beside it names the axis
@@ -35,7 +35,7 @@ enum Sense : unsigned {
 
 struct WordSense {
   unsigned sense;
-  std::string_view words;  ///< blanks between them
+  std::string_view words;  ///< separated by blanks
 };
 
 /// Whether `whole` is one of the words.
@@ -57,7 +57,7 @@ bool has_part(std::string_view words, std::string_view whole) {
   return false;
 }
 
-/// Whole words.
+/// Words that must match as a whole.
 constexpr WordSense kWords[] = {
     {kTime | kWeak, "t ts clock"},
     {kTime,
@@ -98,7 +98,7 @@ constexpr WordSense kWords[] = {
     {kFiller, "motor value wert averaged control controller main of per"},
 };
 
-/// Parts of compound words, the longer first.
+/// Parts of compound words. Longer ones come first.
 constexpr WordSense kParts[] = {
     {kTime, "zeit время времен 时间 時間 時刻"},
     {kPosition, "posi lage winkel angle angul ángulo угол угл положен позиц 位置 角度 座標 坐标 displacement"},
@@ -129,7 +129,7 @@ unsigned sense_of_whole(std::string_view word) {
 
 unsigned sense_of(std::string_view word) {
   if (const unsigned whole = sense_of_whole(word); whole != 0) return whole;
-  constexpr std::size_t kLetterAndIst = 4;  // "iist", "nsoll": a letter, and which of the two it is
+  constexpr std::size_t kLetterAndIst = 4;  // "iist", "nsoll": a letter, and actual value or set point
   for (const auto& [end, sense] :
        {std::pair{std::string_view("ist"), kMeasured}, std::pair{std::string_view("soll"), kReference}})
     if (word.ends_with(end) && word.size() <= kLetterAndIst + 1 && word.size() == end.size() + 1)
@@ -154,7 +154,8 @@ unsigned sense_of(std::string_view word) {
 constexpr unsigned kQuantities =
     kTime | kPosition | kSpeed | kCurrent | kTorque | kForce | kVoltage | kTemperature | kOther;
 
-/// The main quantity of a name with several: "momentenbildender Strom" is a current, "position error" is neither.
+/// The main quantity of a name with several meanings: "momentenbildender Strom" is a current; "position error" is not
+/// used.
 Quantity one_of(unsigned senses) {
   if ((senses & kOther) != 0) return Quantity::other;
   if ((senses & kTime) != 0) return Quantity::time;
@@ -220,7 +221,7 @@ Quantity quantity_of(Dimension dimension) {
   }
 }
 
-/// A name and the unit that stands with it in brackets, behind a comma or "in", or at its end.
+/// A name and its unit, which is in brackets, after a comma or "in", or at the end of the name.
 struct NameAndUnit {
   std::string name, unit;
 };
@@ -237,7 +238,7 @@ std::optional<NameAndUnit> in_brackets(std::string_view name) {
   return std::nullopt;
 }
 
-/// Behind the last comma, slash, underscore, blank or dash: "Weg / mm", "pos_mm", "w_rad_s", "speed rpm".
+/// Units after the last comma, slash, underscore, blank or dash: "Weg / mm", "pos_mm", "w_rad_s", "speed rpm".
 std::vector<NameAndUnit> at_the_end(std::string_view name) {
   std::vector<NameAndUnit> found;
   int cuts = 0;
@@ -259,7 +260,7 @@ bool is_number(std::string_view word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0;
 }
 
-/// "Analog 1": a number of the logger, not of an axis.
+/// "Analog 1": the number belongs to the logger, not to an axis.
 bool is_channel_number(std::string_view word) {
   return word == "analog" || word == "digital" || word == "ch" || word == "chan" || word == "channel" ||
          word == "kanal" || word == "input";
@@ -269,7 +270,7 @@ bool is_axis_letter(std::string_view word) {
   return word.size() == 1 && std::string_view("xyzabcsuvw").find(word.front()) != std::string_view::npos;
 }
 
-/// Combines the meanings of the words. A letter or number that is not itself a quantity names the axis.
+/// Combines the meanings of the words. A letter or number that is not a quantity names the axis.
 Words read_words(std::string_view name) {
   const std::vector<std::string> words = words_of(name);
   Words read;

@@ -1,4 +1,4 @@
-// Meaning of a channel's name: quantity, axis, reference or measured, unit.
+// Meaning of a channel's name: quantity, axis, reference or measured value, unit.
 #pragma once
 
 #include <optional>
@@ -21,25 +21,25 @@ enum class Quantity {
   force,
   voltage,
   temperature,
-  other,  ///< understood, but not used here: acceleration, error, status, supply voltage
+  other,  ///< recognised, but not used: acceleration, error, status, supply voltage
 };
 
 struct ChannelName {
   Quantity quantity = Quantity::unknown;
   bool is_reference = false;        ///< reference: set point, command, target
   bool is_measured = false;         ///< named as measured: actual, feedback
-  bool is_second = false;           ///< of the load side: a scale on the table
+  bool is_second = false;           ///< on the load side: a scale on the table
   bool is_weak = false;             ///< one letter, or a word that may mean something else ("enc", "u", "q")
-  bool makes_torque = false;        ///< q current, torque-making
-  std::string axis;                 ///< "X1", "2"; empty: the name has none
+  bool makes_torque = false;        ///< q current, torque-producing
+  std::string axis;                 ///< "X1", "2"; empty if the name has none
   std::string unit_text;            ///< as the log gives it
-  std::optional<UnitMeaning> unit;  ///< empty: none, or unknown
-  /// For a joint of which the log does not say whether it turns or slides: the unit if it slides (`unit`: if it turns).
+  std::optional<UnitMeaning> unit;  ///< empty if there is none or it is unknown
+  /// For a joint that may turn or slide: the unit if it slides (`unit`: if it turns).
   std::optional<UnitMeaning> sliding_unit{};
 };
 
-/// Recognises words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own
-/// names. The unit comes from the column's own, from brackets, or from the end of the name.
+/// Recognises words in English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and names of some
+/// controllers. The unit comes from the column itself, from brackets, or from the end of the name.
 ChannelName understand_name(const LogColumn& column);
 
 /// "position", "speed", …

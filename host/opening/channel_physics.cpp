@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// Limit of the number of equations: enough for four digits of a factor, whatever the log's length.
+/// Largest number of equations: enough for four digits of a factor, independent of the length of the log.
 constexpr std::size_t kMostRows = 20'000;
 
 struct Fit {
@@ -58,7 +58,7 @@ std::vector<double> running_mean(const std::vector<double>& values, std::size_t 
   return means;
 }
 
-/// Every n-th row, so that at most kMostRows remain.
+/// Uses every n-th row, so that at most kMostRows remain.
 std::size_t stride_of(std::size_t rows) { return std::max<std::size_t>(1, rows / kMostRows); }
 
 }  // namespace
@@ -90,7 +90,7 @@ std::optional<Proportion> change_over_speed(const std::vector<double>& position,
 std::optional<Proportion> follows(const std::vector<double>& raw_measured, const std::vector<double>& raw_reference) {
   if (raw_measured.size() != raw_reference.size() || raw_measured.size() < 60) return std::nullopt;
   if (!is_finite(raw_measured) || !is_finite(raw_reference)) return std::nullopt;
-  // a loop overshoots where it is quick: only what lasts long is followed as it is
+  // In fast motion a control loop overshoots, so only the slow part of the measurement equals the reference.
   const std::size_t width = std::max<std::size_t>(1, raw_measured.size() / 10);
   const std::vector<double> measured = running_mean(raw_measured, width),
                             reference = running_mean(raw_reference, width);
@@ -139,11 +139,11 @@ std::optional<double> wrap_range(const std::vector<double>& position) {
   std::vector<double> jumps;
   for (std::size_t k = 1; k < position.size(); ++k) {
     const double step = position[k] - position[k - 1];
-    // what the step would have been without the jump: as much as the one before
+    // The step without the jump would have been about as large as the one before.
     const double before = k >= 2 ? position[k - 1] - position[k - 2] : 0.0;
     if (std::abs(step) > 0.6 * (high - low)) jumps.push_back(std::abs(step - before));
   }
-  // one jump may be two logs strung together
+  // A single jump may mean that two logs were joined.
   if (jumps.size() < 2 || 10 * jumps.size() > position.size()) return std::nullopt;
   const auto [least, most] = std::ranges::minmax(jumps);
   constexpr double kAlike = 0.05;
@@ -176,7 +176,7 @@ std::optional<int> sign_bit(const std::vector<double>& values) {
           std::max(value >= weight ? magnitude : plain, value >= weight ? value - weight : value);
       ++(value >= weight ? above : below);
     }
-    // both signs reach about as far, and nothing lies between
+    // Both signs reach about equally far, and there are no values between.
     if (above > 2 && below > 2 && plain < 0.6 * weight && magnitude < 0.6 * weight) return bit;
   }
   return std::nullopt;

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kFewest = 100;  // samples
 
-/// From second differences (1 + 4 + 1 = 6) where the position has not changed for a while.
+/// Noise from second differences (factor 1 + 4 + 1 = 6) in intervals without a change of the position.
 std::optional<double> noise_at_rest(const std::vector<double>& position, const std::vector<double>& current) {
   constexpr std::size_t kQuiet = 20;  // samples before and after
   std::vector<std::size_t> still(position.size(), 0);
@@ -39,7 +39,7 @@ std::optional<double> noise_at_rest(const std::vector<double>& position, const s
   return std::sqrt(squares / 6.0 / static_cast<double>(count));
 }
 
-/// Regression of y on some columns and an offset: the factors, and the remaining share of the squares of y.
+/// Regression of y on some columns and an offset: the factors, and the share of the squares of y that remains.
 struct Regression {
   VectorXd factors;
   double left = 1.0;
@@ -54,13 +54,13 @@ Regression regress(const VectorXd& y, const std::vector<const VectorXd*>& by) {
   return {factors, (centred - columns * factors).squaredNorm() / all};
 }
 
-/// A relation is accepted if it leaves less than this share of the squares: a tenth of the signal.
+/// A relation is accepted if it leaves less than this share of the squares, which is a tenth of the signal.
 constexpr double kHolds = 0.01;
-/// A second cause is accepted if it removes at least three quarters of the squares that the first leaves: half of the
-/// error.
+/// A second cause is accepted if it leaves at most this share of the squares that the first one leaves, which is half
+/// of the error.
 constexpr double kNeeded = 0.25;
 
-/// Whether the current follows this voltage.
+/// Whether this voltage determines the current.
 bool find_electrical(const LoggedMotion& logged, const std::vector<double>& volts, DriveConstants& constants) {
   const bool has_speed = logged.speed.size() == logged.current.size();
   std::vector<std::size_t> whole;

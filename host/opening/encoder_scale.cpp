@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Counts a turn: lines times four, powers of two, and whole decimal numbers.
+/// Counts per turn: lines times four, powers of two, and round decimal numbers.
 constexpr double kCounts[] = {400,     800,     1000,    1024,    2000,    2048,    2400,   3600,   4000,
                               4096,    5000,    8000,    8192,    10000,   16384,   20000,  25000,  32768,
                               36000,   40000,   65536,   80000,   100000,  131072,  262144, 360000, 524288,
                               1000000, 1048576, 2097152, 4194304, 8388608, 16777216};
 
-/// Travel a turn, mm.
+/// Travel per turn, mm.
 constexpr double kScrews[] = {1,  1.25, 1.5, 2,  2.5,  3,  4,  5,  6,  6.35, 8,  10, 12, 12.7,
                               15, 16,   20,  25, 25.4, 30, 32, 36, 40, 50,   60, 80, 100};
 
@@ -39,7 +39,7 @@ constexpr NamedScale kLinearSpeeds[] = {{1.0, "mm/s"},         {1e3, "m/s"},    
 constexpr NamedScale kAngles[] = {{1.0, "rad"}, {2.0 * kPi, "turns"}, {kPi / 180.0, "deg"}, {1e-3, "mrad"}};
 constexpr NamedScale kLengths[] = {{1.0, "mm"}, {1e3, "m"}, {25.4, "inch"}, {1e-3, "um"}};
 
-/// Units differ by much more than the error of a speed filter or a poor fit.
+/// Units differ by much more than this. It allows for errors of a speed filter or a poor fit.
 constexpr double kUnitTolerance = 0.02;
 
 std::optional<NeatScale> nearest(std::span<const NamedScale> scales, double measured) {
@@ -54,7 +54,7 @@ std::optional<NeatScale> nearest(std::span<const NamedScale> scales, double meas
 std::optional<NeatScale> neat_counts_per_mm(double measured, double tolerance) {
   struct Ratio {
     double value = 0.0, counts = 0.0, screw = 0.0;
-    int ways = 0;  ///< number of combinations of usual encoders and screws that give it
+    int ways = 0;  ///< number of combinations of usual encoders and screws with this value
   };
   constexpr double kUsualScrew = 10.0;
   std::vector<Ratio> ratios;

@@ -62,7 +62,7 @@ class HalReader {
     return ns && *ns > 0.0 ? std::optional(*ns * 1e-9) : std::nullopt;
   }
 
-  /// Reads the signal's name and the other pins on it, which identify it.
+  /// Reads the name of the signal and the other pins on it, which identify it.
   void take_net(const std::vector<std::string_view>& words) {
     for (std::size_t k = 2; k < words.size(); ++k) {
       const auto pin = sampler_pin(words[k]);
@@ -91,7 +91,7 @@ void name_by_hal(Log& log, const std::string& hal_path) {
   const HalReader hal(read_file(hal_path));
   for (const auto& [number, sampler] : hal.samplers) {
     const std::size_t pins = sampler.pins.size(), counted = log.columns.size();
-    if (pins != counted && pins + 1 != counted) continue;  // one more: halsampler -t writes the sample's number first
+    if (pins != counted && pins + 1 != counted) continue;  // halsampler -t writes the number of the sample first
     std::size_t column = counted - pins;
     if (column == 1) log.columns[0].name = "sample number";
     for (const auto& [pin, named] : sampler.pins) {

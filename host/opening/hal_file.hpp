@@ -1,4 +1,4 @@
-// LinuxCNC: halsampler writes columns without names; the .hal file that loads it gives the names.
+// LinuxCNC: halsampler writes columns without names; the .hal file that loads it contains the names.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// Names the columns of a halsampler log by the `net` lines of a .hal file, and states the thread's period. Throws
-/// Failure(bad_input) where the file has no sampler with as many pins as the log has columns.
+/// Names the columns of a halsampler log by the `net` lines of a .hal file, and adds the period of the thread. Throws
+/// Failure(bad_input) if the file has no sampler with as many pins as the log has columns.
 void name_by_hal(Log& log, const std::string& hal_path);
 
 }  // namespace host

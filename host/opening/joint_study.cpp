@@ -1,4 +1,4 @@
-// Joints of robots for which the log does not say whether they turn or slide.
+// Joints of robots, for which the log does not say whether they turn or slide.
 #include <fmt/format.h>
 
 #include "host/import/joint_states.hpp"
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// The data sheet determines whether a joint turns or slides; without one it is assumed to turn.
+/// The data sheet determines whether a joint turns or slides. Without a data sheet, the joint is assumed to turn.
 void AxisStudy::settle_joint() {
   const bool slides = hints_.sheet && hints_.sheet->kind != sim::DriveKind::rotary;
   for (NamedChannel& channel : channels_) {
@@ -37,7 +37,7 @@ void AxisStudy::ask_of_joint() {
       sliding += fmt::format("{}{}", sliding.empty() ? "" : ",", mapping_text(other));
     }
   if (!turning.empty())
-    ask(fmt::format("{}does the joint turn (rad, Nm)? The bag does not tell: {}. If it slides (m, N), say --map {}",
+    ask(fmt::format("{}does the joint turn (rad, Nm)? The bag does not say: {}. If it slides (m, N), give --map {}",
                     axis_->name.empty() ? "" : axis_->name + ": ", turning, sliding));
 }
 

@@ -13,10 +13,10 @@ namespace host {
 namespace {
 
 struct ToolColumn {
-  std::string_view ending;  ///< of the column's name
+  std::string_view ending;  ///< end of the column's name
   Quantity quantity;
   bool is_reference;
-  std::string_view unit;  ///< empty: none
+  std::string_view unit;  ///< empty if there is none
 };
 
 /// ODrive firmware 0.5.1 and later: turns, turns/s, A (docs.odriverobotics.com, interface reference).
@@ -46,7 +46,7 @@ constexpr ToolColumn kMoteus[] = {
     {"motor_temperature", Quantity::temperature, false, "degC"},
 };
 
-/// VESC Tool's log: ms since midnight, A, degrees (github.com/vedderb/vesc_tool, vescinterface.cpp).
+/// VESC Tool: ms since midnight, A, degrees (github.com/vedderb/vesc_tool, vescinterface.cpp).
 constexpr ToolColumn kVesc[] = {
     {"ms_today", Quantity::time, false, "ms"},
     {"q_axis_current", Quantity::current, false, "A"},
@@ -70,8 +70,8 @@ constexpr ToolColumn kVesc[] = {
     {"gnss_posTime", Quantity::other, false, ""},
 };
 
-/// Betaflight's Blackbox: terms of the PID and the battery, which are no axis' current or torque (blackbox_decode.c of
-/// github.com/betaflight/blackbox-tools, csv-export-worker.js of blackbox-log-viewer).
+/// Betaflight's Blackbox: the terms of the PID and the battery are not the current or torque of an axis
+/// (blackbox_decode.c of github.com/betaflight/blackbox-tools, csv-export-worker.js of blackbox-log-viewer).
 void apply_betaflight(const Log& log, std::vector<ChannelName>& names) {
   static constexpr std::string_view kOthers[] = {"axisP[",         "axisI[",           "axisD[",
                                                  "axisF[",         "axisS[",           "vbatLatest",
@@ -115,7 +115,7 @@ void apply(const Log& log, std::span<const ToolColumn> known, std::vector<Channe
     }
 }
 
-/// Older ODrive firmware uses counts, recognised by 8192 per turn.
+/// Whether the log is from older ODrive firmware, which uses counts, with 8192 per turn.
 bool are_counts(const Log& log) {
   constexpr double kMoreThanTurns = 3000.0;
   for (const LogColumn& column : log.columns)
@@ -125,7 +125,7 @@ bool are_counts(const Log& log) {
   return false;
 }
 
-/// "x-output": the axis letter at the beginning of a signal's name; empty if there is none.
+/// "x-output": the axis letter at the start of a signal's name; empty if there is none.
 std::string axis_of_signal(std::string_view name) {
   const std::vector<std::string> words = words_of(name);
   const bool letter = words.size() > 1 && words.front().size() == 1 &&
@@ -133,7 +133,7 @@ std::string axis_of_signal(std::string_view name) {
   return letter ? words.front() : "";
 }
 
-/// Pins of HAL: reference, feedback and output of a loop.
+/// Pins of LinuxCNC's HAL: reference, feedback and output of a control loop.
 void apply_hal(const Log& log, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k) {
     const std::string text = log.columns[k].name + " " + log.columns[k].kind;
@@ -154,7 +154,7 @@ void apply_hal(const Log& log, std::vector<ChannelName>& names) {
   }
 }
 
-/// Joint states: the unit stands for the quantity, and what is in front of the last point is the joint.
+/// Joint states: the unit determines the quantity, and the text before the last point is the joint.
 void apply_joint_states(const Log& log, std::vector<ChannelName>& names) {
   struct JointColumn {
     std::string_view unit;
@@ -180,7 +180,7 @@ void apply_joint_states(const Log& log, std::vector<ChannelName>& names) {
 }  // namespace
 
 void apply_known_tools(Log& log, std::vector<ChannelName>& names) {
-  for (std::size_t k = 0; k < log.columns.size(); ++k)  // dSPACE's captures: X is their time
+  for (std::size_t k = 0; k < log.columns.size(); ++k)  // captures of dSPACE: X is the time
     if (log.columns[k].name.ends_with(".X.Data")) names[k].quantity = Quantity::time;
   const bool odrive = has(log, "pos_estimate") || has(log, "vel_estimate") || has(log, "Iq_measured");
   if (odrive && !are_counts(log)) apply(log, kOdrive, names);

@@ -1,4 +1,4 @@
-// Programs whose logs give names without units, with the meaning of these names.
+// Tools whose logs have names without units, with the meaning of these names.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace host {
 
 /// Recognises a log of ODrive, moteus, VESC Tool, Betaflight, LinuxCNC or ROS (joint states). Adds the units and
-/// meanings that this tool's channel names imply, and names the layout after the tool.
+/// meanings of the channel names of this tool, and names the layout after it.
 void apply_known_tools(Log& log, std::vector<ChannelName>& names);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// An accepted mapping as a file (`axis-mapping/1`, TOML), so that the next log of that machine needs no questions.
+// An accepted mapping as a file (`axis-mapping/1`, TOML), so that the next log of the machine needs no questions.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@ namespace host {
 
 struct MappedAxis {
   std::string name;  ///< may be empty
-  std::string map;   ///< in the language of --map, t_s included
+  std::string map;   ///< in the language of --map, including t_s
   std::optional<double> resample_s;
   std::vector<std::string> unwrap;  ///< COLUMN=RANGE
 };
 
 std::string format_mapping_file(const std::vector<MappedAxis>& axes);
 
-/// Throws Failure(bad_input) naming file, line, field and remedy.
+/// Throws Failure(bad_input) with file, line, field and remedy.
 std::vector<MappedAxis> parse_mapping_file(std::string_view text, std::string_view name);
 
 }  // namespace host

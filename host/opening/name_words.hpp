@@ -1,4 +1,4 @@
-// Splits a name into words in small letters: at signs, at changes from small to large letters, and between letters and
+// Splits a name into words in lower case: at signs, at changes from lower to upper case, and between letters and
 // digits.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace host {
 /// bus, voltage. Letters of other alphabets stay together.
 std::vector<std::string> words_of(std::string_view name);
 
-/// Small letters, also of Latin-1 and Cyrillic.
+/// Lower case, also for Latin-1 and Cyrillic.
 std::string in_small_letters(std::string_view text);
 
 }  // namespace host

@@ -9,7 +9,8 @@ namespace host {
 
 namespace {
 
-/// Below, the first resonances and every reversal of a feed drive (5 to 100 ms) fall between the samples.
+/// At lower rates, the first resonances and every reversal of a feed drive (5 to 100 ms) are shorter than a few
+/// samples.
 constexpr double kFewest_Hz = 200.0;
 
 struct Recipe {

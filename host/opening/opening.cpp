@@ -20,13 +20,13 @@ namespace host {
 
 namespace {
 
-/// Runs shorter than this cannot be identified at any controller rate.
+/// Shorter runs cannot be identified at any rate of a controller.
 constexpr std::size_t kFewestRowsOfARun = 100;
 
-/// Unknown columns to keep in a record.
+/// Largest number of unknown columns that are kept in a record.
 constexpr std::size_t kMostExtra = 16;
 
-/// 64 MiB: numbers of two characters take a gigabyte by the time they are understood.
+/// 64 MiB. With two characters per number, such a file needs a gigabyte of memory when it is read.
 constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20U;
 constexpr std::size_t kMostOpened = kLargest / 2;
 
@@ -143,7 +143,7 @@ class RecordMaker {
     return all;
   }
 
-  /// Separate stamps that equal the log's stamps.
+  /// Replaces separate stamps by the log's stamps if they are equal.
   void share_stamps(const Log& log, std::vector<Mapping>& mappings) const {
     if (mappings.front().source == kRowSource) return;
     const std::vector<double>& stamps = log.find(mappings.front().source).values;
@@ -151,7 +151,7 @@ class RecordMaker {
       if (!mapping.time_source.empty() && log.find(mapping.time_source).values == stamps) mapping.time_source.clear();
   }
 
-  /// Unrecognised channels keep their own names.
+  /// Adds channels that were not recognised under their own names.
   void add_unknown(const Log& log, const OpenedAxis& axis, std::vector<Mapping>& mappings) const {
     if (file_.understood.axes.size() > 1) return;
     std::size_t added = 0;
@@ -167,7 +167,7 @@ class RecordMaker {
       const bool whole = column.fault.empty() && column.values.size() == log.columns.front().values.size() &&
                          std::ranges::all_of(column.values, [](double value) { return std::isfinite(value); });
       if (taken || !whole || !(column.time.empty() || column.time == axis.stamps)) continue;
-      if (&log.find(column.name) != &column) continue;  // a name twice
+      if (&log.find(column.name) != &column) continue;  // the name occurs twice
       mappings.push_back({name, column.name, {}, 1.0, 0.0});
       ++added;
     }
@@ -319,7 +319,7 @@ Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& o
 
 namespace {
 
-/// Data-sheet values from the log, for each axis that gives a record.
+/// Data-sheet values from the log, for each axis with a record.
 nlohmann::json constants_json(const Understanding& understood) {
   nlohmann::json all = nlohmann::json::array();
   for (const OpenedAxis& axis : understood.axes) {

@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-/// Feed drives are logged between a PLC's slow trend and a current loop's own rate.
+/// Range of sampling rates for feed drives: from a slow trend in a PLC to the rate of a current loop.
 constexpr double kSlowest_Hz = 5.0, kFastest_Hz = 45'000.0;
 
 bool is_plausible(double period_s) { return period_s > 0.99 / kFastest_Hz && period_s < 1.01 / kSlowest_Hz; }
@@ -26,14 +26,14 @@ bool speaks_of_sampling(std::string_view text) {
   return std::ranges::any_of(kWords, [&](std::string_view word) { return text.find(word) != std::string_view::npos; });
 }
 
-/// Hertz behind a number are a rate.
+/// A number followed by hertz is a rate.
 std::optional<double> hertz(std::string_view unit) {
   if (unit == "Hz" || unit == "hz" || unit == "HZ" || unit == "Гц") return 1.0;
   if (unit == "kHz" || unit == "khz" || unit == "кГц") return 1e3;
   return std::nullopt;
 }
 
-/// The text's unit of time: behind the number, else in brackets anywhere.
+/// The unit of time in the text: after the number, or in brackets anywhere.
 std::string_view unit_near(std::string_view text, std::string_view behind) {
   behind = trim_blanks(behind);
   std::string_view word = behind.substr(0, behind.find_first_of(" \t;,)]\""));
@@ -76,8 +76,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The nominal value of a measured period: the nearest number of three digits, or with steps of 1/3 and 2/3 us, if the
-/// difference is within the error of quartz clocks.
+/// The nominal value of a measured period: the nearest number with three digits, or with steps of 1/3 and 2/3 us, if
+/// the difference is within the error of quartz clocks.
 double as_set(double period_s) {
   constexpr double kClocks = 2e-4;
   const double unit = std::pow(10.0, std::floor(std::log10(period_s)) - 2.0);
@@ -86,10 +86,10 @@ double as_set(double period_s) {
                                                           : period_s;
 }
 
-/// Steps of stamps, in the stamps' own unit.
+/// Steps between stamps, in the unit of the stamps.
 struct Steps {
   std::vector<double> all;
-  std::vector<std::size_t> backwards;  ///< rows whose stamp is not after the one before
+  std::vector<std::size_t> backwards;  ///< rows whose stamp is not later than the one before
   double typical = 0.0;
 };
 
@@ -106,7 +106,7 @@ Steps steps_of(const std::vector<double>& stamps) {
   return steps;
 }
 
-/// The stamps that hold a value.
+/// The stamps that have a value.
 std::vector<double> known(const std::vector<double>& values) {
   std::vector<double> result;
   for (const double value : values)
@@ -114,8 +114,8 @@ std::vector<double> known(const std::vector<double>& values) {
   return result;
 }
 
-/// Unit of stamps, in s, if the log does not state it: the only unit with which the rate is plausible for a drive's
-/// log.
+/// The unit of the stamps, in s, if the log does not state it: the only unit that gives a plausible rate for the log of
+/// a drive.
 struct Guess {
   double factor = 0.0, sure = 0.0;
   std::string why;
@@ -152,7 +152,7 @@ TimeBase by_rows(double period_s, std::string why, double sure) {
   return base;
 }
 
-/// Whether stamps stay within a third of a period of a straight line, so that no sample was lost.
+/// Whether all stamps are within a third of a period of a straight line, so that no sample was lost.
 bool follows_even_line(const std::vector<double>& stamps, double period) {
   constexpr double kShare = 0.33;
   for (std::size_t k = 0; k < stamps.size(); ++k)
@@ -214,7 +214,7 @@ TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName
   base.period_s = as_set(typical_s);
   if (stated && stated->unit_is_known && std::abs(stated->value / typical_s - 1.0) < 0.02)
     base.period_s = stated->value;
-  // repeated stamps here and there: runs strung together
+  // A few repeated stamps mean that several runs were joined.
   if (!steps.backwards.empty()) {
     if (20 * steps.backwards.size() > values.size()) {
       const double mean_s = base.factor * (values.back() - values.front()) / static_cast<double>(values.size() - 1);

@@ -16,14 +16,15 @@ namespace host {
 
 namespace {
 
-/// More columns than any controller's log has; beyond it nothing is searched.
+/// No controller's log has more columns. A larger log is not searched.
 constexpr std::size_t kMostColumns = 2'000;
 
 bool is_matrix(const Log& log) {
   return log.layout == "mat" || log.layout == "npy" || log.layout == "npz" || log.layout == "hdf5";
 }
 
-/// Gaps filled by the value before (for comparing channels only; a record's are not filled so).
+/// Replaces each gap by the value before it, only for the comparison of channels; gaps in a record are not filled in
+/// this way.
 std::vector<double> without_gaps(std::vector<double> values) {
   const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
   double last = first == values.end() ? 0.0 : *first;
@@ -43,7 +44,7 @@ class Understander {
       : raw_(log), log_(for_comparing(log)), hints_(hints) {
     std::size_t numbers = 0;
     for (const LogColumn& column : log.columns) numbers += column.values.size();
-    constexpr std::size_t kMostNumbers = 2'000'000;  // copies of larger siblings would fill the memory
+    constexpr std::size_t kMostNumbers = 2'000'000;  // copies of larger logs would fill the memory
     for (const Log* sibling : group)
       if (sibling != &log && numbers < kMostNumbers) copies_.push_back(for_comparing(*sibling));
     group_.push_back(&log_);
@@ -76,22 +77,22 @@ class Understander {
       names_.push_back(understand_name(log_.columns[k]));
       const std::string& name = log_.columns[k].name;
       if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos && log_.columns[k].unit.empty())
-        names_.back() = {};  // a matrix' name
+        names_.back() = {};  // the name of a matrix
       if (const KnownColumn* known = find_known_column(name)) {
         names_.back().axis.clear();
         names_.back().is_second = known->channel == &Record::x2;
       }
-      if (name == "u_V") names_.back().is_reference = true;  // a record's own name for the command
+      if (name == "u_V") names_.back().is_reference = true;  // the name of the command in a record
     }
     apply_known_tools(log_, names_);
     found_.layout = log_.layout;
   }
 
-  /// The rows' stamps: a column called time, else one that counts evenly and is not called anything else.
+  /// The stamps of the rows: a column named as time, or a column without another meaning that counts evenly.
   void find_clock() {
     const LogColumn* stamps = nullptr;
     std::size_t at = 0;
-    std::ptrdiff_t most = -1;  // of several stamps, those of the most channels
+    std::ptrdiff_t most = -1;  // of several stamps, uses those with the most channels
     for (std::size_t k = 0; k < log_.columns.size(); ++k) {
       if (!raw_.columns[k].fault.empty() || raw_.columns[k].values.size() < 2 || is_constant(raw_.columns[k].values))
         continue;
@@ -129,7 +130,7 @@ class Understander {
     names_[at].quantity = Quantity::time;
     if (channel.sure < kSureEnough && !channel.taken_as.empty())
       found_.asks.push_back(
-          fmt::format("times in {}: {}? Else give --period SECONDS", source_text(stamps_), channel.why));
+          fmt::format("times in {}: {}? If not, give --period SECONDS", source_text(stamps_), channel.why));
   }
 
   static bool rises(const LogColumn& column) {
@@ -137,14 +138,14 @@ class Understander {
            std::ranges::adjacent_find(column.values, std::ranges::greater_equal()) == column.values.end();
   }
 
-  /// A column without a name that counts by one is a row number.
+  /// A column that has no name and counts by one is a row number.
   bool is_counter(std::size_t k) const {
     const std::vector<double>& values = log_.columns[k].values;
     return !is_matrix(log_) && log_.columns[k].name.empty() && is_ramp(values) &&
            std::abs(values[1] - values[0] - 1.0) < 1e-9;
   }
 
-  /// Channels by their axes. Where names tell of one axis or none, all belong together.
+  /// Groups the channels by axis. If the names contain one axis or none, all channels belong together.
   void split_axes() {
     std::set<std::string> tags;
     for (std::size_t k = 0; k < names_.size(); ++k)
@@ -158,26 +159,26 @@ class Understander {
       axes_[belongs ? names_[k].axis : ""].push_back({k, names_[k]});
     }
     if (!several) return;
-    // a channel without an axis name belongs to one of them or to none; it gives no record of its own
+    // A channel without an axis name belongs to one of the axes or to none. It does not become a record of its own.
     const auto rest = axes_.find("");
     if (rest == axes_.end()) return;
     for (const NamedChannel& channel : rest->second) {
       OpenedChannel& out = found_.channels[channel.column];
       out.why =
           channel.name.quantity == Quantity::unknown
-              ? "not understood; kept out"
+              ? "not recognised; left out"
               : fmt::format("{}, but its name does not assign it to an axis", quantity_name(channel.name.quantity));
       const bool effort = channel.name.quantity == Quantity::current || channel.name.quantity == Quantity::torque ||
                           channel.name.quantity == Quantity::voltage || channel.name.quantity == Quantity::force;
       if (effort && !is_constant(log_.columns[channel.column].values))
-        found_.asks.push_back(
-            fmt::format("the axis of '{}' ({}), which its name does not tell: give --map with the columns of one axis",
-                        out.name, quantity_name(channel.name.quantity)));
+        found_.asks.push_back(fmt::format(
+            "the axis of '{}' ({}), which its name does not contain: give --map with the columns of one axis", out.name,
+            quantity_name(channel.name.quantity)));
     }
     axes_.erase(rest);
   }
 
-  /// An axis whose channels all have the same stamps, and not the log's, keeps its own rate.
+  /// An axis keeps its own rate if all its channels have the same stamps and these differ from the log's stamps.
   void take_own_stamps(const std::vector<NamedChannel>& channels, OpenedAxis& axis) {
     const std::string& stamps = log_.columns[channels.front().column].time;
     const bool own = !stamps.empty() && stamps != stamps_ && !hints_.period_s &&
@@ -204,7 +205,7 @@ class Understander {
     found_.axes.push_back(std::move(axis));
   }
 
-  /// Columns without a meaningful name: possible quantities, from their relations.
+  /// For columns without a meaningful name, lists the possible quantities according to their relations.
   void list_unknown() {
     constexpr std::size_t kMost = 16;
     std::vector<std::size_t> unknown;
@@ -245,7 +246,7 @@ class Understander {
   }
 
   const Log& raw_;
-  Log log_;  ///< the same without gaps
+  Log log_;  ///< the log with gaps filled
   const OpeningHints& hints_;
   std::vector<Log> copies_;
   std::vector<const Log*> group_;

@@ -21,7 +21,7 @@ struct NamedUnit {
   UnitMeaning meaning;
 };
 
-/// Case-sensitive names: M is not m.
+/// Case-sensitive names, because M is not m.
 constexpr NamedUnit kExact[] = {
     {"s", {Dimension::time}},
     {"S", {Dimension::time}},
@@ -42,7 +42,7 @@ constexpr NamedUnit kExact[] = {
     {"nm", {Dimension::length, 1e-6}},
 };
 
-/// Names in small letters, without blanks; "·" and "*" stand as ".", "²" as "2".
+/// Names in lower case, without blanks, with "." for "·" and "*", and "2" for "²".
 constexpr NamedUnit kFolded[] = {
     // time
     {"sec", {Dimension::time}},
@@ -278,7 +278,7 @@ constexpr NamedUnit kFolded[] = {
     {"p.u.", {Dimension::share}},
 };
 
-/// One way of writing for several: small letters, no blanks, "." for a product, "u" for micro.
+/// Normalises the spelling: lower case, no blanks, "." for a product, "u" for micro.
 std::string folded(std::string_view text) {
   static constexpr std::pair<std::string_view, std::string_view> kSame[] = {{"·", "."},
                                                                             {"*", "."},
@@ -329,7 +329,7 @@ std::optional<UnitMeaning> unit_named(std::string_view text) {
     if (unit.name == text) return unit.meaning;
   std::string name = folded(text);
   if (const auto unit = folded_unit(name)) return unit;
-  // "rad_s" and "rad_per_s" as column names write them
+  // "rad_s" and "rad_per_s", as in column names.
   if (const std::size_t per = name.find("_per_"); per != std::string::npos)
     name = fmt::format("{}/{}", name.substr(0, per), name.substr(per + 5));
   if (const std::size_t per = name.find("per"); per != std::string::npos && per > 0)

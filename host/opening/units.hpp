@@ -1,4 +1,4 @@
-// Units as loggers write them, in several languages.
+// Units as loggers write them in several languages.
 #pragma once
 
 #include <optional>
@@ -14,16 +14,16 @@ enum class Dimension {
   angular_speed,  ///< rad/s
   linear_speed,   ///< mm/s
   count_speed,    ///< 1/s
-  acceleration,   ///< whatever its unit
+  acceleration,   ///< any unit
   current,        ///< A
   torque,         ///< Nm
   force,          ///< N
   voltage,        ///< V
   temperature,    ///< deg C
-  share,          ///< 1: of a rated value that the log does not give
+  share,          ///< 1; relative to a rated value that the log does not give
 };
 
-/// value in the dimension's own unit = factor * number + offset.
+/// value in the unit of the dimension = factor * number + offset.
 struct UnitMeaning {
   Dimension dimension;
   double factor = 1.0;
@@ -33,7 +33,7 @@ struct UnitMeaning {
 /// Meaning of "mm", "°", "U/min", "мс", "r.p.m.", "rad_s", "1/min" …; empty for an unknown unit.
 std::optional<UnitMeaning> unit_named(std::string_view text);
 
-/// Unit used for a dimension, "rad/s".
+/// The unit that is used for a dimension, "rad/s".
 std::string_view unit_of(Dimension dimension);
 
 }  // namespace host

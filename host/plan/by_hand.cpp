@@ -1,4 +1,4 @@
-// Manual tests for two explanations that no motion separates.
+// Manual tests for two explanations that no motion can tell apart.
 #include <fmt/format.h>
 
 #include <algorithm>

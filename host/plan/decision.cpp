@@ -15,7 +15,7 @@ namespace host {
 
 namespace {
 
-/// Another motion may double the error of a good model; a larger error is another effect.
+/// Another motion may double the error of a good model. A larger error means another effect.
 constexpr double kFar = 2.0;
 
 /// chi^2 per observation of the best rival, at least 1.
@@ -25,7 +25,7 @@ double dispersion_of(const std::vector<Rival>& rivals, const RecordSet& both) {
   return std::max(1.0, least);
 }
 
-/// chi^2 of the table in addition to the motor's, for each rival refitted to both. The scale's own errors, which all
+/// chi^2 of the table in addition to that of the motor, for each rival refitted to both. Errors of the scale, which all
 /// rivals lack, count as dispersion.
 void add_table(Decision& decision, const RecordSet& both, const RecordSet& before) {
   const std::size_t rivals = decision.rivals.size();
@@ -79,7 +79,8 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     sim::DriveDescription& model = decision.rivals[k].model;
     const double known = chi_square(model, before);
     model = refitted(model, both);
-    // If the run frees a fit from a local minimum, earlier records fit better, too; that is not counted.
+    // If the run frees a fit from a local minimum, the error on earlier records decreases too. This decrease is not
+    // counted.
     decision.chi_square[k] = chi_square(model, both) - std::min(known, chi_square(model, before));
   });
   decision.dispersion = dispersion_of(decision.rivals, both);
@@ -97,7 +98,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
   double sum = 0.0;
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     Rival& rival = decision.rivals[k];
-    // Neither prior odds nor a run make anything impossible.
+    // Neither prior odds nor a run can make a rival impossible.
     rival.probability = std::max(rival.probability, 1.0 / kHighestOdds) *
                         std::max(std::exp(-0.5 * (decision.chi_square[k] - least)), 1.0 / kHighestOdds);
     sum += rival.probability;

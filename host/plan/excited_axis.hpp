@@ -1,4 +1,4 @@
-// The board's own axis on a plant within this process: excitations as on a board, without its protocol.
+// The board's own axis on a plant in this process. It performs excitations as a board does, but without the protocol.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,12 @@
 
 namespace host {
 
-/// `Hal`: the board's side of a drive's connectors. Deterministic.
+/// `Hal`: the board's end of the connectors of a drive. Deterministic.
 template <firmware::SupervisedHal Hal>
 class ExcitedAxis {
  public:
-  /// `values`: the board's parameters, with a design on its first axis. `advance` advances the plant by one control
-  /// period. The record's rows begin with the first piece.
+  /// `values`: the board's parameters, with a design on its first axis. `advance`: advances the plant by one control
+  /// period. The first row of the record belongs to the first piece.
   ExcitedAxis(Hal& hal, const firmware::ParameterValues& values, const sim::DriveDescription& drive,
               std::function<void()> advance)
       : wires_(hal),
@@ -42,10 +42,11 @@ class ExcitedAxis {
     record_.x2.clear();
   }
 
-  /// From standstill to standstill, followed by a short rest. Its end is `refused` if the axis does not accept it.
+  /// Runs an excitation from standstill to standstill, followed by a short rest. The end is `refused` if the axis does
+  /// not accept it.
   firmware::ExcitationStatePayload run(const Excitation& excitation) {
     const auto refused = static_cast<std::uint8_t>(firmware::ExcitationEnd::refused);
-    constexpr firmware::ClientToken kClient = 1;  // the only one
+    constexpr firmware::ClientToken kClient = 1;  // the only client
     firmware::ExcitationStatePayload none;
     none.end = refused;
     const bool is_open = excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
@@ -54,7 +55,7 @@ class ExcitedAxis {
       if (!excitation_.load(part, kClient, values_.axis(0), rate_Hz_)) return none;
     if (!excitation_.plan(excitation.request, values_.axis(0), rate_Hz_)) return none;
     excitation_.start();
-    // A stop within the limits of any drive takes less.
+    // A stop within the limits of any drive takes less time.
     constexpr double kLongestStop_s = 10.0;
     const auto most = excitation.request.samples + samples(kLongestStop_s);
     for (std::size_t k = 0; k < most && excitation_.is_active(); ++k) step();

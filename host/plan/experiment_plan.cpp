@@ -17,25 +17,27 @@ namespace host {
 
 namespace {
 
-/// Log odds that stay above kHighestOdds whatever the noise: 7 for the odds, and twice their standard deviation, the
-/// square root of twice themselves.
+/// Log odds that exceed kHighestOdds for any noise: 7 for the odds, plus two standard deviations; the standard
+/// deviation is the square root of twice the log odds.
 constexpr double kEnough = 20.0;
-/// At this value after a complete re-fit of a rival, the odds will reach kHighestOdds if increased by half.
+/// If the log odds reach this value after a complete fit of the other rival, they will exceed those of kHighestOdds
+/// even if they fall by a third.
 const double kSure = 1.5 * std::log(kHighestOdds);
-/// Less than this cannot lead to a decision.
+/// Log odds below this cannot lead to a decision.
 const double kHope = std::log(kDecided / (1.0 - kDecided));
-/// Distance of a run from the edge, as a part of the box's half, for what the simulated machines lack.
+/// Largest distance of a simulated run from the start, as a part of half the box. The margin covers effects that the
+/// simulated machines lack.
 constexpr double kBoxShare = 0.95;
-/// Time of a piece in addition to its own: enabling, stopping, resting.
+/// Time of a piece in addition to its own: enabling, stopping and resting.
 constexpr double kOverhead_s = 0.3;
 
-/// A rival with one set of parameters: that of the training records, or of a later re-fit.
+/// A rival with one set of parameters: from the training records or from a later fit.
 struct Incarnation {
   sim::DriveDescription model;
-  Information known;  ///< of the training records
+  Information known;  ///< information from the training records
 };
 
-/// chi^2 of every incarnation on the record of a piece with one rival true: [rival][incarnation].
+/// chi^2 of every incarnation on the record of a piece if one rival is true: [rival][incarnation].
 using Testimony = std::vector<std::vector<Information>>;
 
 struct TriedPiece {
@@ -68,7 +70,8 @@ class Planner {
   Plan make() {
     try_pieces(candidate_pieces(model_, box_));
     choose();
-    // A rival whose re-fit goes farther than its slope predicted is compared with the pieces from there.
+    // If the fit of a rival moves farther than its linearisation predicted, the pieces are compared again from its new
+    // parameters.
     constexpr int kRounds = 4;
     for (int round = 0; round < kRounds && !chosen_.empty(); ++round) {
       if (verify() || round + 1 == kRounds) break;
@@ -120,7 +123,7 @@ class Planner {
     return tried;
   }
 
-  /// Empty if the run leaves the box, comes near its edge, or is refused.
+  /// Empty if the run is refused, leaves the box or comes near its edge.
   std::optional<Record> simulated(const RunPlan& run, std::size_t truth, std::uint64_t seed) const {
     try {
       RunOutcome outcome = simulate_run(run, rivals_[truth].model, board_, seed);
@@ -131,7 +134,7 @@ class Planner {
     }
   }
 
-  /// Log odds of the true rival to another after some pieces, with the other re-fitted.
+  /// Log odds of the true rival to another one after some pieces, with the other one refitted.
   double log_odds(const std::vector<std::size_t>& pieces, std::size_t truth, std::size_t other) const {
     const auto cost = [&](std::size_t rival) {
       double least = HUGE_VAL;
@@ -163,8 +166,7 @@ class Planner {
     return value;
   }
 
-  /// The pieces with the largest gain per second, until every pair that any of them separates has enough or the time is
-  /// used up.
+  /// Chooses the pieces with the largest gain per second, until every separable pair has enough or the time is used up.
   void choose() {
     plan_.pairs = all_pairs();
     chosen_.clear();
@@ -198,8 +200,8 @@ class Planner {
     }
   }
 
-  /// Simulates the whole run with new noise, re-fits every rival completely, and notes the odds. True if they are as
-  /// expected; otherwise the re-fitted rivals become incarnations.
+  /// Simulates the whole run with new noise, fits every rival completely, and stores the odds. Returns true if they are
+  /// as expected; otherwise the fitted rivals become incarnations.
   bool verify() {
     plan_.run.pieces.clear();
     for (const std::size_t piece : chosen_) plan_.run.pieces.push_back(tried_[piece].piece);
@@ -211,7 +213,7 @@ class Planner {
     for (std::size_t truth = 0; truth < rivals_.size(); ++truth) {
       constexpr std::uint64_t kOtherNoise = 1000;
       std::optional<Record> record = simulated(plan_.run, truth, options_.seed + kOtherNoise + truth);
-      if (!record) {  // the sequence of pieces leaves the box: drop the last one
+      if (!record) {  // the sequence of pieces leaves the box; removes the last one
         chosen_.pop_back();
         return chosen_.empty() || verify();
       }
@@ -247,7 +249,7 @@ class Planner {
 
   void conclude() {
     std::vector<std::string> by_hand;
-    std::vector<double> odds(rivals_.size(), kHighestOdds);  // of each to the next, if it is the true one
+    std::vector<double> odds(rivals_.size(), kHighestOdds);  // of each rival, if it is true, to the next one
     for (PairOutlook& pair : plan_.pairs) {
       if (pair.separable) {
         plan_.separable = true;
@@ -291,7 +293,7 @@ class Planner {
   firmware::ParameterValues board_;
   std::vector<std::vector<Incarnation>> incarnations_;
   std::vector<double> at_first_;  ///< chi^2 of each rival on the training records
-  double dispersion_ = HUGE_VAL;  ///< of the best of them there
+  double dispersion_ = HUGE_VAL;  ///< of the best rival on the training records
   std::vector<TriedPiece> tried_;
   std::vector<std::size_t> chosen_;
   Plan plan_;

@@ -29,8 +29,8 @@ Information& Information::operator*=(double factor) {
 
 double Information::least() const {
   if (slope.size() == 0) return square;
-  // A very small weight holds parameters that the data do not determine: a change as large as a parameter's own scale
-  // costs a hundredth of one observation.
+  // A very small weight holds parameters that the data do not determine: a change by a parameter's own scale costs a
+  // hundredth of one observation.
   constexpr double kLoose = 0.01;
   Eigen::MatrixXd held = curvature;
   held.diagonal().array() += kLoose;
@@ -39,8 +39,8 @@ double Information::least() const {
 
 namespace {
 
-/// x2 - x, measured less predicted, over the sensors' noise, of the rows of all windows; the squares of a window add up
-/// to their mean.
+/// Measured minus predicted x2 - x over the sensor noise, for the rows of all windows. The sum of the squares over a
+/// window is their mean.
 Eigen::VectorXd table_residuals(const sim::DriveDescription& model, const RecordSet& set) {
   const sim::Drive drive(model);
   std::vector<double> all;
@@ -91,7 +91,7 @@ Information information_of_table(const sim::DriveDescription& model, const Recor
   const ParameterVector vector(model);
   const Eigen::VectorXd values = vector.read(model), here = table_residuals(model, set);
   Eigen::MatrixXd slopes(here.size(), values.size());
-  constexpr double kStep = 1e-3;  // of a parameter's scale: its change shows, and is still linear
+  constexpr double kStep = 1e-3;  // of a parameter's scale; large enough to show, small enough to be linear
   for (Eigen::Index column = 0; column < values.size(); ++column) {
     const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(column)];
     const double step = values(column) + kStep * free.scale > free.upper ? -kStep : kStep;

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// `run_file`: file of the run; the document names it if there is a run.
+/// `run_file`: file of the run. The document names it if there is a run.
 nlohmann::json to_json(const Plan& plan, const std::string& run_file);
 
 nlohmann::json to_json(const Decision& decision);

@@ -26,7 +26,7 @@ Verdict verdict_block(const Plan& plan, const std::string& run_file) {
   const std::string group = fmt::format("{}", fmt::join(names_of(plan.rivals), " or "));
   if (plan.separable) {
     block.headline = fmt::format("A run of {:.3g} s separates {}: {}", plan.run.duration_s(),
-                                 plan.by_hand.empty() ? "which it is" : "some of them apart", group);
+                                 plan.by_hand.empty() ? "the explanations" : "some of the explanations", group);
     block.sentences.push_back(fmt::format("Expected odds of the true one: {}.", odds_text(plan.expected_odds)));
     block.command = fmt::format("axistool excite AXIS {} -o run.csv", run_file);
   } else {
@@ -39,7 +39,7 @@ Verdict verdict_block(const Plan& plan, const std::string& run_file) {
 void add_pairs(Report& report, const Plan& plan) {
   Table table;
   table.title = "Pair by pair";
-  table.headings = {"pair", "odds expected if it is the first", "if it is the second", "by hand"};
+  table.headings = {"pair", "expected odds if it is the first", "if it is the second", "by hand"};
   for (const PairOutlook& pair : plan.pairs)
     table.rows.push_back(
         {fmt::format("{} or {}", rival_name(plan.rivals[pair.a].kinds), rival_name(plan.rivals[pair.b].kinds)),
@@ -48,7 +48,7 @@ void add_pairs(Report& report, const Plan& plan) {
   report.add(table);
 }
 
-/// Predictions of both rivals of a pair for the run in which one of them is true.
+/// Predictions of both rivals of a pair for the run in which the first one is true.
 void add_parting(Report& report, const Plan& plan, const PairOutlook& pair) {
   const PredictedRun& run = plan.predicted[pair.a];
   const RecordSet set = common_ground({&run.record}, plan.rivals);

@@ -1,4 +1,4 @@
-// Report of a plan before anything moves: the run, its expected result, and how the rivals' predictions differ.
+// Report of a plan before the axis moves: the run, its expected result, and how the predictions of the rivals differ.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Writes a self-contained HTML report. `run_file` is the file in the command that makes the run.
+/// Writes a self-contained HTML report. `run_file`: file name in the command that makes the run.
 void write_plan_report(const Plan& plan, const std::string& model_name, const std::string& run_file,
                        const std::string& path);
 

@@ -19,7 +19,7 @@ namespace {
                             path, what));
 }
 
-/// The candidates that a diagnosis could not separate.
+/// Takes the candidates that a diagnosis could not tell apart.
 void take_diagnosis(const nlohmann::json& document, Beliefs& beliefs) {
   const auto effects = document.at("verdict").at("effects").get<std::vector<std::string>>();
   if (document.at("verdict").at("status") != "ambiguous") return;
@@ -34,7 +34,7 @@ void take_diagnosis(const nlohmann::json& document, Beliefs& beliefs) {
 
 Beliefs read_beliefs(const std::string& path) {
   const auto document = nlohmann::json::parse(read_file(path), nullptr, false);
-  if (document.is_discarded() || !document.is_object()) refuse(path, "no JSON document");
+  if (document.is_discarded() || !document.is_object()) refuse(path, "not a JSON document");
   Beliefs beliefs;
   try {
     const auto format = document.at("format").get<std::string>();
@@ -47,7 +47,7 @@ Beliefs read_beliefs(const std::string& path) {
                                   document.at("probabilities").at(k).get<double>()});
       beliefs.expected_odds = document.value("expected_odds", 0.0);
     } else {
-      refuse(path, fmt::format("'{}' holds no prior odds", format));
+      refuse(path, fmt::format("'{}' contains no prior odds", format));
     }
   } catch (const nlohmann::json::exception& error) {
     refuse(path, error.what());

@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Command that moves the drive, and the box's range above it.
+/// Makes pieces between the command that just moves the drive and the limit of the box.
 class Pieces {
  public:
   Pieces(const sim::DriveDescription& model, const ExcitationLimits& box) : box_(box), data_(model.data) {
@@ -36,7 +36,7 @@ class Pieces {
   }
 
  private:
-  /// Voltages that move the axis: parts of the box's range above friction.
+  /// Voltages that move the axis, at parts of the range between friction and the limit of the box.
   std::vector<double> voltages(std::initializer_list<double> shares) const {
     std::vector<double> values;
     for (const double share : shares) {
@@ -66,7 +66,7 @@ class Pieces {
       for (const double hold : {0.1, 0.3}) add("steps", {u, 0.0, -u, 0.0}, {{"hold", hold}}, 8.0 * hold);
   }
 
-  /// Breakaways: the command ramps slowly through zero and the static friction.
+  /// Breakaways: the command ramps slowly through zero and through the static friction.
   void ramps() {
     const double most = std::min(box_.volts, 1.6 * holding_V_);
     for (const double time : {0.3, 1.0}) add("ramp", {}, {{"amplitude", most}, {"time", time}}, 4.0 * time);
@@ -79,7 +79,7 @@ class Pieces {
           add("sine", {}, {{"amplitude", u}, {"frequency", frequency}}, std::max(1.0, 4.0 / frequency));
     for (const double ride : {0.05, 0.3})
       for (const double frequency : {1.0, 5.0}) {
-        // The reference never reverses: the jog is faster than the sine.
+        // The reference never reverses, because the jog is faster than the sine.
         const double speed = ride * box_.speed;
         const double amplitude = 0.8 * speed / (2.0 * std::numbers::pi * frequency);
         add("sine", {}, {{"amplitude", amplitude}, {"frequency", frequency}, {"ride", speed}}, 2.0, "reference");
@@ -114,7 +114,7 @@ class Pieces {
     add("ladder", {0.003 * v, 0.01 * v}, {{"hold", 0.5}}, 2.2);
   }
 
-  /// Rests of several lengths, between jogs that end at several phases of a turn.
+  /// Rests of several durations, between jogs that end at several angles of a turn.
   void dwells() {
     const double speed = 0.1 * box_.speed;
     add("dwell", {0.02, 0.05, 0.1, 0.3}, {{"speed", speed}, {"hold", 0.1}}, 1.5);
@@ -125,7 +125,7 @@ class Pieces {
 
   const ExcitationLimits& box_;
   const sim::DataSheet& data_;
-  double holding_V_ = 0.0;  ///< at which the axis just does not move
+  double holding_V_ = 0.0;  ///< largest voltage at which the axis stands still
   double millimetre_ = 1.0, turn_ = 0.0, rate_Hz_ = 1000.0;
   std::vector<RunPiece> list_;
 };

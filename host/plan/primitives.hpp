@@ -1,4 +1,4 @@
-// The pieces for plans: the board's kinds of excitation, with numbers that suit drive and box.
+// The pieces for plans: the board's kinds of excitation with values that suit drive and box.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace host {
 
-/// Ladders of jogs, micro-reversals, dwells between jogs that end at several phases of a turn, slow sines on a jog in
-/// one direction, accelerations over one stroke, steps at two voltages, multisines and coast-downs. Each comes in a few
-/// sizes between the smallest that moves the axis and the box. A simulation must show whether a piece stays in the box.
+/// Ladders of jogs, micro-reversals, dwells between jogs that end at several angles of a turn, slow sines on a jog in
+/// one direction, accelerations over one stroke, steps at two voltages, multisines and coast-downs. Each kind has a few
+/// sizes, from the smallest that moves the axis to the largest that the box allows. A simulation must show whether a
+/// piece stays in the box.
 std::vector<RunPiece> candidate_pieces(const sim::DriveDescription& model, const ExcitationLimits& box);
 
 }  // namespace host

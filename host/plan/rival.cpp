@@ -19,7 +19,7 @@ namespace {
 /// As many iterations as the last fit of a diagnosis.
 constexpr FitOptions kFit{.most_iterations = 15, .least_gain = 1e-5, .most_steps = 40e6};
 
-/// The best fit of the effect from any of its starts, if the search found no promising one.
+/// The best fit of the effect from all of its starts, if the search found no promising one.
 sim::DriveDescription best_start(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                  const RecordSet& training) {
   constexpr std::size_t kStarts = 3;
@@ -54,8 +54,8 @@ sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescr
   return found.empty() ? best_start(*info, model, training) : found.front().model;
 }
 
-/// Adds the effect to a model that already fits well: first only the effect's own parameters are fitted. Empty if the
-/// model cannot take it.
+/// Adds the effect to a model that already fits well; only the parameters of the effect are fitted first. Empty if the
+/// effect cannot be added to the model.
 std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, const sim::DriveDescription& model,
                                                        const RecordSet& training) {
   constexpr FitOptions kAlone{.most_iterations = 8, .least_gain = 1e-3, .freedom = Freedom::last_effect};
@@ -69,8 +69,8 @@ std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, 
   return best.model;
 }
 
-/// A fitted rival with its other kinds replaced, re-fitted. Empty if that is impossible, or if both concern the same
-/// part of the drive: a gap of zero width is a spring, and would be no other explanation.
+/// A fitted rival with its kinds replaced, and fitted again. Empty if that is impossible, or if both kinds describe the
+/// same part of the drive: a gap of zero width is a spring, and so is not another explanation.
 std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vector<std::string>& kinds,
                                                const RecordSet& training) {
   const auto has = [](const std::vector<std::string>& list, const std::string& kind) {

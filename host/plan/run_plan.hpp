@@ -1,4 +1,4 @@
-// A planned run: pieces of excitation, one after the other in one record, within one box.
+// A planned run: successive pieces of excitation in one record, within one box.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ namespace host {
 struct RunPiece {
   std::string kind;
   ExcitationNumbers numbers;
-  std::string closed_loop;  ///< "", "reference" or "output"; ladder, dwell and reversals always run in closed loop
+  std::string closed_loop;  ///< "", "reference" or "output"; ladder, dwell and reversals are always closed-loop
   double time_s = 1.0;      ///< > 0
   unsigned seed = 1;
 };
 
 struct RunPlan {
   std::vector<RunPiece> pieces;
-  ExcitationLimits box;             ///< of the whole run, around the axis's first position
+  ExcitationLimits box;             ///< of the whole run, relative to the first position of the axis
   std::vector<std::string> rivals;  ///< explanations to separate, "cogging", "backlash + input_delay"
-  double expected_odds = 0.0;       ///< prior expectation of the odds of the true rival to the next; 0: none
+  double expected_odds = 0.0;       ///< expected odds of the true rival to the next one; 0 if unknown
 
   double duration_s() const;
 };
@@ -30,7 +30,7 @@ struct RunPlan {
 /// "steps 3 -3 hold=0.3, open loop, 2 s"
 std::string piece_text(const RunPiece& piece);
 
-/// The excitation of a piece that begins at this distance from the run's start, mm (m): its window is the rest of the
+/// The excitation of a piece that begins at `offset` from the start of the run, mm (m). Its window is the rest of the
 /// box on both sides. Throws Failure as design_excitation() does.
 Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, double offset,
                         const ExcitationScale& scale);
@@ -38,10 +38,10 @@ Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, doub
 /// The intersection of two boxes.
 ExcitationLimits within_both(const ExcitationLimits& a, const ExcitationLimits& b);
 
-/// Header fields of the run's record, in addition to those of its pieces.
+/// Header fields for the record of the run, in addition to those of its pieces.
 std::map<std::string, std::string> run_header(const RunPlan& run);
 
-/// `axis-run-plan/1`, TOML. Reading throws Failure(bad_input) naming file, line and field.
+/// `axis-run-plan/1` in TOML. Reading throws Failure(bad_input) with file, line and field.
 std::string run_plan_toml(const RunPlan& run);
 RunPlan parse_run_plan(std::string_view text, const std::string& name);
 RunPlan read_run_plan(const std::string& path);

@@ -1,4 +1,4 @@
-// A planned run on a simulated machine, under the board's own controller.
+// A planned run on a simulated machine, with the board's own controller.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@ namespace host {
 /// Result of a run.
 struct RunOutcome {
   Record record;
-  bool completed = false;  ///< every piece ended within its box
+  bool completed = false;  ///< true if every piece ended within its box
   std::string ended;       ///< end of the last piece, in words
-  double farthest = 0.0;   ///< relative to the run's start, mm (m)
+  double farthest = 0.0;   ///< largest distance from the start of the run, mm (m)
 };
 
-/// The parameters of `axistool design` for this model, on the board's first axis. Throws Failure(bad_input) for a model
-/// without a design.
+/// The parameters that `axistool design` makes for this model, on the board's first axis. Throws Failure(bad_input) for
+/// a model for which no design is possible.
 firmware::ParameterValues design_values(const sim::DriveDescription& model);
 
-/// Units of a drive with such a design.
+/// The units of a drive with such a design.
 ExcitationScale scale_of_drive(const sim::DataSheet& data);
 
-/// Runs the pieces one after the other; ends with the first that does not complete.
+/// Runs the pieces one after the other. Ends with the first piece that does not complete.
 template <firmware::SupervisedHal Hal>
 RunOutcome run_on(ExcitedAxis<Hal>& axis, const RunPlan& run, const ExcitationScale& scale) {
   RunOutcome outcome;
@@ -44,8 +44,8 @@ RunOutcome run_on(ExcitedAxis<Hal>& axis, const RunPlan& run, const ExcitationSc
   return outcome;
 }
 
-/// On a plant made of `machine`; `board`: from design_values(). `seed` fixes the tachometer's noise. Throws Failure if
-/// a piece does not fit its box.
+/// Simulates the run on a plant made of `machine`. `board`: from design_values(). `seed`: of the tachometer noise.
+/// Throws Failure if a piece does not fit its box.
 RunOutcome simulate_run(const RunPlan& run, const sim::DriveDescription& machine,
                         const firmware::ParameterValues& board, std::uint64_t seed);
 

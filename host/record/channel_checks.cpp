@@ -16,15 +16,16 @@ namespace host {
 
 namespace {
 
-/// Least travel that counts as motion, in encoder steps: beyond dither of a count or two at rest, and beyond the
-/// elastic travel before breakaway of a fine encoder.
+/// Least travel that counts as motion, in encoder steps. It is larger than dither of a count or two at rest, and larger
+/// than the elastic travel before breakaway in steps of a fine encoder.
 constexpr double kMovedSteps = 20.0;
-/// Travel according to the tachometer that any encoder on the axis must show: with 0.1 mm/rad (a fine screw) 0.05 mm.
+/// If the tachometer shows this travel, any encoder on the axis must show motion: with 0.1 mm/rad (a fine screw) it is
+/// 0.05 mm.
 constexpr double kSeenTravel_rad = 0.5;
 constexpr double kSeenTravel_m = 1e-3;
-/// Speed that is motion, in standard deviations of its noise (a tachometer at rest stays within six).
+/// Least speed that counts as motion, in standard deviations of its noise (a tachometer at rest stays within six).
 constexpr double kMovedNoise = 10.0;
-/// Tachometers and screws agree within a few per cent; a factor beyond this is a unit.
+/// Tachometers and screws agree within a few per cent, so a larger factor than this is a wrong unit.
 constexpr double kUnitFactor = 1.5;
 
 [[noreturn]] void fail(const Record& record, const std::string& what) {
@@ -41,7 +42,7 @@ std::string_view name_of(const Record& record, std::vector<double> Record::*chan
   throw FaultyLog(message, {{kind, std::string(name_of(record, channel)), record.path, 0.0, 0.0, message}});
 }
 
-/// "line 4, column x_mm": where a reader finds the channel, or its value in a row.
+/// "line 4, column x_mm": the place of a channel, or of its value in a row, for messages.
 std::string where(const Record& record, std::vector<double> Record::*channel, std::size_t rows_below = 0) {
   if (record.names_line == 0) return fmt::format("column {}", name_of(record, channel));
   return fmt::format("line {}, column {}", record.names_line + rows_below, name_of(record, channel));
@@ -56,7 +57,7 @@ double range_of(const std::vector<double>& values) {
   return *high - *low;
 }
 
-/// The smallest change of a channel: the encoder's step; 0 for a constant one.
+/// The smallest change of a channel, which is the encoder's step; 0 for a constant channel.
 double smallest_step(const std::vector<double>& values) {
   double smallest = 0.0;
   for (std::size_t k = 1; k < values.size(); ++k) {
@@ -66,11 +67,11 @@ double smallest_step(const std::vector<double>& values) {
   return smallest;
 }
 
-/// The coarsest possible step of the position's counter: no change is smaller, and no two changes differ by less. At a
-/// steady speed all changes are large, but they differ by single steps.
+/// The coarsest possible step of the position's counter: the smallest change, or the smallest difference between two
+/// changes if that is smaller. At a steady speed all changes are large, but they differ by single steps.
 double coarsest_step(const std::vector<double>& values) {
   double coarsest = smallest_step(values);
-  // Rounds to the digits that a text holds, because finer digits are rounding errors.
+  // Rounds to the digits that the text contains, because finer digits are rounding errors.
   constexpr double kRounding = 1e-6;
   for (std::size_t k = 2; k < values.size(); ++k) {
     const double change = values[k] - values[k - 1], before = values[k - 1] - values[k - 2];
@@ -87,7 +88,7 @@ double largest_step(const std::vector<double>& values) {
   return largest;
 }
 
-/// Standard deviation of white noise on a channel, from second differences (which motion hardly enters).
+/// Standard deviation of white noise on a channel, from second differences, which motion hardly affects.
 double noise_of(const std::vector<double>& values) {
   double squares = 0.0;
   for (std::size_t k = 2; k < values.size(); ++k) {
@@ -98,7 +99,7 @@ double noise_of(const std::vector<double>& values) {
   return values.size() < 3 ? 0.0 : std::sqrt(squares / kGain / static_cast<double>(values.size() - 2));
 }
 
-/// Means over blocks of `length` rows; remaining rows at the end are not used.
+/// Means over blocks of `length` rows. Rows left over at the end are not used.
 std::vector<double> block_means(const std::vector<double>& values, std::size_t length) {
   std::vector<double> means;
   for (std::size_t start = 0; start + length <= values.size(); start += length) {
@@ -111,7 +112,7 @@ std::vector<double> block_means(const std::vector<double>& values, std::size_t l
 
 constexpr std::size_t kBlockRows = 10;
 
-/// Travel by the tachometer about its own median (an offset is not motion), rad or m: largest minus smallest.
+/// Travel by the tachometer relative to its median (an offset is not motion), rad or m: largest minus smallest.
 double travel_by_speed(const Record& record) {
   const double rest = median(record.w);
   double travel = 0.0, low = 0.0, high = 0.0;
@@ -137,7 +138,7 @@ bool position_moves(const Record& record) {
   return record.has_position() && range_of(record.x) >= kMovedSteps * smallest_step(record.x) && !is_constant(record.x);
 }
 
-/// Largest distance of the position from the straight line at speed `slope` (per row) through its first sample.
+/// Largest distance of the position from the straight line through its first sample with the slope `slope` per row.
 double departure_from_line(const std::vector<double>& x, double slope) {
   double largest = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k)
@@ -163,8 +164,8 @@ void check_position_and_speed_alive(const Record& record) {
     fail_dead(record, &Record::w, fmt::format("{} shows motion", name_of(record, &Record::x)));
 }
 
-/// The table's own sensor may be mounted either way and read in any unit; backlash, wind-up and pitch errors are far
-/// below its travel.
+/// The table's sensor may be mounted in either direction and may have any unit. Backlash, wind-up and pitch errors are
+/// much smaller than its travel.
 void check_table_position(const Record& record) {
   if (!record.has_table_position() || !position_moves(record)) return;
   if (is_constant(record.x2))
@@ -195,7 +196,7 @@ void check_table_position(const Record& record) {
 
 bool axis_moves(const Record& record) { return record.has_position() ? position_moves(record) : speed_moves(record); }
 
-/// The axis' path: its position or, without one, the sum of its speed. Only its shape matters, not its unit.
+/// The path of the axis: its position or, without one, the sum of its speed. Only the shape matters, not the unit.
 std::vector<double> path_of(const Record& record) {
   if (record.has_position()) return record.x;
   std::vector<double> path(record.size());
@@ -221,11 +222,11 @@ Ways longest_ways(const std::vector<double>& path) {
   return ways;
 }
 
-/// A constant torque moves a drive in one direction; without torque it only slows down.
+/// With a constant torque a drive moves in one direction, and without torque it only slows down.
 bool motion_contradicts_constant_effort(const Record& record, double effort) {
   const std::vector<double> path = path_of(record);
   const Ways ways = longest_ways(path);
-  constexpr double kBothWays = 0.3;  // of the longer way: more than the spring-back of a stop
+  constexpr double kBothWays = 0.3;  // of the longer way; more than the spring-back of an end stop
   if (std::min(ways.up, ways.down) > kBothWays * std::max(ways.up, ways.down)) return true;
   if (effort != 0.0) return false;
   const std::size_t block = std::max(kBlockRows, path.size() / 20);  // a twentieth of the record
@@ -283,7 +284,7 @@ constexpr UnitMistake kLinearMistakes[] = {
 };
 
 std::string_view nearest_mistake(double factor, sim::DriveKind kind) {
-  constexpr double kNear = 1.15;  // leads and tachometers are known better than this
+  constexpr double kNear = 1.15;  // leads and tachometers are more accurate than this
   const auto nearest = [&](auto& mistakes) -> std::string_view {
     for (const UnitMistake& mistake : mistakes)
       if (std::abs(std::log(factor / mistake.factor)) < std::log(kNear)) return mistake.what;
@@ -292,7 +293,7 @@ std::string_view nearest_mistake(double factor, sim::DriveKind kind) {
   return kind == sim::DriveKind::rotary ? nearest(kRotaryMistakes) : nearest(kLinearMistakes);
 }
 
-/// Compares the speed with what the position says (travel = lead * speed * time), block by block.
+/// Compares the speed with the derivative of the position (travel = lead * speed * time), block by block.
 void check_speed_against_position(const Record& record, double lead) {
   if (!record.has_speed() || !position_moves(record) || !speed_stands_out_of_noise(record)) return;
   std::vector<double> by_position, by_speed;
@@ -374,7 +375,7 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
 }
 
 void check_units(const Record& record, const sim::DataSheet& sheet) {
-  constexpr double kBeyondRange = 20.0;  // a command may ask for more than the converter gives, but not for that much
+  constexpr double kBeyondRange = 20.0;  // a command may exceed the converter's range, but not by that much
   if (sheet.dac_limit_V > 0.0)
     check_range(record, &Record::u_V, -kBeyondRange * sheet.dac_limit_V, kBeyondRange * sheet.dac_limit_V,
                 "far beyond the range of the model's D/A converter; the numbers look like counts or mV");
@@ -386,7 +387,7 @@ void check_units(const Record& record, const sim::DataSheet& sheet) {
          fmt::format("{}: a unit cannot be right: the position changes by at most {:.3g} {} per row, less than half a "
                      "step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
                      where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
-  constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
+  constexpr double kCoarse = 200.0;  // encoder steps; shows a unit that is 1000 times too small
   const double step = coarsest_step(record.x);
   if (step > kCoarse * sheet.encoder_resolution)
     fail(record, LogFaultKind::wrong_unit, &Record::x,

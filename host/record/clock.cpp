@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Takes digits in front of `text`, at least `fewest` and at most `most` of them.
+/// Removes between `fewest` and `most` digits from the start of `text`; returns their value.
 std::optional<int> take_digits(std::string_view& text, std::size_t fewest, std::size_t most) {
   std::size_t count = 0;
   while (count < most && count < text.size() && text[count] >= '0' && text[count] <= '9') ++count;

@@ -33,7 +33,7 @@ std::string fault_of_pair(std::string_view first, std::string_view second) {
 
 std::string_view missing_among(std::span<const std::string_view> names) {
   if (!give(names, &Record::t_s)) return "t_s (time in seconds)";
-  // Without a command or current a reference suffices, for the tracking error.
+  // If there is no command or current, a reference suffices, for the tracking error.
   const bool has_reference = give(names, &Record::x_ref) || give(names, &Record::w_ref);
   if (!give(names, &Record::u_V) && !give(names, &Record::i_A) && !has_reference)
     return "u_V (command in volts) or i_A (motor current)";

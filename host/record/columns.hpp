@@ -1,4 +1,4 @@
-// The columns of `axis-record/1`: the channel and the unit of each.
+// The columns of `axis-record/1`, with channel and unit of each.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct KnownColumn {
   std::string_view name;
   std::vector<double> Record::*channel;
   ColumnUnit unit = ColumnUnit::as_is;
-  std::optional<sim::DriveKind> implies;  ///< the kind of drive that alone has such a column
+  std::optional<sim::DriveKind> implies;  ///< the only kind of drive that has such a column
 };
 
 inline constexpr KnownColumn kKnownColumns[] = {
@@ -50,14 +50,14 @@ inline const KnownColumn* find_known_column(std::string_view name) {
   return nullptr;
 }
 
-/// Name of a channel in files with the drive's own units (rotary: mm, rad/s; linear: m, m/s).
+/// Name of a channel in files with the units of the drive (rotary: mm, rad/s; linear: m, m/s).
 std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKind kind);
 
 /// Name of a channel in the record's file; column_name() if the record does not come from a file.
 std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel);
 
-/// Fault of a set of column names: a duplicate, two for the same quantity or of different kinds of drive, or a required
-/// one missing. Empty if nothing is found.
+/// Fault of a set of column names: a duplicate, two columns for one quantity, columns of different kinds of drive, or a
+/// missing required column. Empty if there is no fault.
 std::string fault_of_columns(std::span<const std::string_view> names);
 
 /// Numbers under one of the format's column names, in the unit of that name.
@@ -66,11 +66,12 @@ struct NamedColumn {
   std::vector<double> values;
 };
 
-/// Names the first two columns that hold the same varying numbers: one channel logged twice. Empty when there are none.
+/// Names the first two columns with the same varying numbers, which are one channel logged twice. Empty if there are
+/// none.
 std::string fault_of_copies(std::span<const NamedColumn> columns);
 
-/// Puts columns into the record's channels, in the drive's own units, and finds the kind of drive by its speed column.
-/// The names must be free of faults.
+/// Puts columns into the channels of the record, in the units of the drive, and determines the kind of drive from the
+/// speed column. The names must be free of faults.
 void fill_channels(std::vector<NamedColumn> columns, Record& record);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// The units in which a drive's quantities are shown.
+// The units in which quantities of a drive are shown.
 #pragma once
 
 #include "sim/drive_description.hpp"

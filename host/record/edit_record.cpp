@@ -43,14 +43,14 @@ void keep_rows(Record& record, std::size_t begin, std::size_t end) {
   }
 }
 
-/// A note under a key of its own, also where the record has been edited before.
+/// Adds a note under a key of its own, even if the record has been edited before.
 void note(Record& record, const std::string& key, const std::string& what) {
   std::string free = key;
   for (int number = 2; record.header.contains(free); ++number) free = fmt::format("{}_{}", key, number);
   record.header[free] = what;
 }
 
-/// The numbers of a channel by the name that the file or the format gives it.
+/// The numbers of a channel, by its name in the file or in the format.
 std::vector<double>& channel_of(Record& record, std::string_view name) {
   std::vector<std::string_view> names;
   for (const auto channel : kChannelsInFileOrder) {
@@ -70,10 +70,10 @@ std::vector<double>& channel_of(Record& record, std::string_view name) {
   fail(record, "there is no channel {}{}; there is {}", name, did_you_mean(name, names), fmt::join(names, ", "));
 }
 
-/// A record's text in two parts: the text above its rows, and the lines from the first to the last selected row.
+/// The text of a record in two parts: the text above its rows, and the lines from the first to the last selected row.
 struct RowsInTime {
   std::string_view head, kept;
-  double first_s = std::nan(""), last_s = std::nan("");  ///< of all rows that have a time
+  double first_s = std::nan(""), last_s = std::nan("");  ///< times of the first and last row
 };
 
 std::string_view field(std::string_view line, std::size_t number) {
@@ -85,7 +85,7 @@ std::size_t time_column(std::string_view names) {
   const std::size_t columns = static_cast<std::size_t>(std::ranges::count(names, ',')) + 1;
   for (std::size_t k = 0; k < columns; ++k)
     if (trim_blanks(field(names, k)) == "t_s") return k;
-  return 0;  // the reader reports that it is missing
+  return 0;  // the reader reports the missing column
 }
 
 RowsInTime rows_in_time(std::string_view text, double from_s, double to_s) {
@@ -139,7 +139,7 @@ Record shift_channel(const Record& record, std::string_view name, double by_s) {
   const double slack = 1e-6 * period_s;
   std::size_t begin = 0, end = record.size();
   while (begin < end && record.t_s[begin] < moved.t_s.front() - slack) ++begin;
-  // A held value lasts for one period after its stamp.
+  // A held value is valid for one period after its stamp.
   while (end > begin && record.t_s[end - 1] > moved.t_s.back() + (held ? 0.0 : slack)) --end;
   keep_rows(shifted, begin, end);
   values = held ? mean_of_held(moved, shifted.t_s, period_s) : interpolate(moved, shifted.t_s);

@@ -1,4 +1,4 @@
-// Records that have passed the gate: the input of every analysis.
+// Records that have passed the gate. They are the input of every analysis.
 #pragma once
 
 #include <utility>
@@ -9,15 +9,15 @@
 
 namespace host {
 
-/// Records adapted to one drive, with their roles and doubtful points. Only the gate
-/// (host/evidence/measurement_gate.hpp) makes them. Pointers to the records stay valid when it is moved.
+/// Records adapted to one drive, with their roles and faults. Only the gate (host/evidence/measurement_gate.hpp) makes
+/// them. Pointers to the records stay valid after a move.
 class Measurements {
  public:
   Measurements(Measurements&&) = default;
   Measurements& operator=(Measurements&&) = default;
 
   const std::vector<Record>& training() const { return training_; }
-  /// May be empty: then a part of the training data is held back for validation.
+  /// If empty, a part of the training data is held back for validation.
   const std::vector<Record>& validation() const { return validation_; }
   std::vector<const Record*> training_records() const { return pointers(training_); }
   std::vector<const Record*> validation_records() const { return pointers(validation_); }
@@ -28,7 +28,7 @@ class Measurements {
     return all;
   }
 
-  /// Faults that are not fatal, and fatal ones that the user accepted.
+  /// Faults that are not fatal, and fatal faults that the user accepted.
   const std::vector<LogFault>& log() const { return log_; }
 
  private:

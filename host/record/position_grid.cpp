@@ -8,9 +8,9 @@
 namespace host {
 
 double position_grid(const std::vector<double>& position) {
-  constexpr double kOff = 0.02;  // of a step: digits of the text
+  constexpr double kOff = 0.02;  // of a step; allows for the digits of the text
   constexpr double kMostSteps = 200.0;
-  // One smallest change may be chance; a step comes again.
+  // A single smallest change may be chance; a step occurs several times.
   constexpr std::size_t kFewestChanges = 50, kFewestSteps = 3;
   std::vector<double> moved;
   for (std::size_t k = 1; k < position.size(); ++k)

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kFormat = "axis-record/1";
 
-/// The lines of a text, one by one, without their ends; counts them for messages.
+/// Returns the lines of a text one by one, without line ends. Counts them for messages.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
@@ -47,7 +47,7 @@ struct Column {
   std::string_view name;
   const KnownColumn* known = nullptr;
   std::vector<double> values;
-  std::vector<std::string_view> fields;  ///< of columns that the format does not know
+  std::vector<std::string_view> fields;  ///< fields of columns that the format does not contain
 };
 
 class Parser {
@@ -78,7 +78,7 @@ class Parser {
     fail("line {}: {}", lines_.number(), fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// Takes the `#` lines; leaves `line_` at the line that holds the column names.
+  /// Reads the `#` lines. Afterwards `line_` is the line with the column names.
   void read_header() {
     if (lines_.only_blanks_left()) fail("the file is empty; record again, or name another file");
     while (lines_.next(line_) && line_.starts_with('#')) read_header_line();
@@ -96,7 +96,7 @@ class Parser {
 
   void read_header_line() {
     const std::size_t colon = line_.find(':');
-    if (colon == std::string_view::npos) return;  // a remark
+    if (colon == std::string_view::npos) return;  // a comment
     const std::string key(trim_blanks(line_.substr(1, colon - 1)));
     const std::string value(trim_blanks(line_.substr(colon + 1)));
     if (!record_.header.emplace(key, value).second)
@@ -133,7 +133,7 @@ class Parser {
     if (lines_.only_blanks_left())
       fail("line {}: no rows follow the column names; the record is empty, record again", lines_.number());
     const std::size_t expected_rows = lines_.bytes_left() / (2 * columns_.size()) + 1;
-    constexpr std::size_t kReserveAtMost = 1U << 20U;  // rows beyond grow the vectors as usual
+    constexpr std::size_t kReserveAtMost = 1U << 20U;  // more rows grow the vectors as usual
     for (Column& column : columns_) {
       if (column.known)
         column.values.reserve(std::min(expected_rows, kReserveAtMost));

@@ -24,7 +24,7 @@ template <typename... Args>
   throw Failure(ExitCode::bad_input, fmt::format("{}: {}", name, fmt::format(format, std::forward<Args>(args)...)));
 }
 
-/// The header's sample period, where it has one.
+/// The sample period in the header, if there is one.
 std::optional<double> take_header(const RecordColumns& given, Record& record) {
   std::optional<double> period_s;
   for (const auto& [key, value] : given.header) {

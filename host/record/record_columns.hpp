@@ -15,7 +15,7 @@ struct RecordColumns {
   std::map<std::string, std::string> header;  ///< the lines "# key: value"; "format" may be absent
 };
 
-/// Makes the record that read_record() would make of the same numbers in a file, with the same checks. Stamps count as
+/// Makes the same record as read_record() from the same numbers in a file, with the same checks. Time stamps count as
 /// exact to the digits that they need. `name` stands for the path in messages; rows count from 0. Throws
 /// Failure(bad_input).
 Record record_of(RecordColumns columns, const std::string& name);

@@ -1,4 +1,4 @@
-// Where records came from, as messages and models name it.
+// The origin of records, as named in messages and models.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace host {
 
-/// The record's file without its folders.
+/// The file name of the record, without folders.
 std::string file_name(const Record& record);
 
-/// The files of all records, "jog.csv, sweep.csv": the origin that a model states.
+/// The files of all records, "jog.csv, sweep.csv": the origin that a model names.
 std::string origin_of(const std::vector<Record>& records);
 
 }  // namespace host

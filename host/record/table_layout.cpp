@@ -27,7 +27,8 @@ void split_at_blanks(std::string_view line, Fields& fields) {
   }
 }
 
-/// A number with a decimal comma, as one with a point. Empty where it has a point as well: thousands, or no number.
+/// Replaces a decimal comma by a point. Empty if the field also has a point, because the comma then separates thousands
+/// or the field is not a number.
 std::string with_point(std::string_view field) {
   std::string plain(field);
   if (plain.find('.') != std::string::npos || std::ranges::count(plain, ',') > 1) return {};
@@ -35,7 +36,7 @@ std::string with_point(std::string_view field) {
   return plain;
 }
 
-/// The first lines that are not empty: enough to tell a preamble from a table.
+/// The first lines that are not empty; enough of them to tell a preamble from a table.
 std::vector<std::string_view> sample_of(std::string_view text) {
   constexpr std::size_t kLines = 400;
   std::vector<std::string_view> lines;
@@ -67,7 +68,7 @@ double merit_of(TableLayout& layout, const std::vector<std::string_view>& lines)
       return layout.number(field).has_value() || parse_clock(field).has_value();
     });
     const std::size_t filled =
-        fields.size() - (fields.size() > 1 && fields.back().empty() ? 1 : 0);  // lines that end so
+        fields.size() - (fields.size() > 1 && fields.back().empty() ? 1 : 0);  // for lines that end with a separator
     merit += static_cast<double>(known) / static_cast<double>(filled);
   }
   return merit;

@@ -25,7 +25,7 @@ void append_utf8(std::uint32_t character, std::string& out) {
   }
 }
 
-/// Pairs of bytes from `begin` on; the first of a pair is the high one where `big_end_first`.
+/// Converts pairs of bytes from `begin` on. `big_end_first`: the first byte of a pair is the high one.
 std::string from_utf16(const std::string& text, std::size_t begin, bool big_end_first) {
   std::string out;
   out.reserve(text.size() / 2);
@@ -45,7 +45,7 @@ std::string from_utf16(const std::string& text, std::size_t begin, bool big_end_
   return out;
 }
 
-/// Length of the UTF-8 character at `at`; 0 where there is none.
+/// Length of the UTF-8 character at `at`; 0 if there is none.
 std::size_t utf8_length(const std::string& text, std::size_t at) {
   const auto lead = static_cast<std::uint8_t>(text[at]);
   const std::size_t length = lead < 0x80U                    ? 1
@@ -68,7 +68,7 @@ bool is_utf8(const std::string& text) {
   return true;
 }
 
-/// Bytes 0x80 to 0x9F of Windows-1252 (Unicode consortium, CP1252.TXT); 0 where the page has none.
+/// Bytes 0x80 to 0x9F of Windows-1252 (Unicode consortium, CP1252.TXT); 0 for undefined bytes.
 constexpr std::uint16_t kWindows1252[32] = {0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
                                             0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0,      0x017D, 0,
                                             0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
@@ -88,7 +88,7 @@ std::string from_windows_1252(const std::string& text) {
 }  // namespace
 
 std::string as_utf8(std::string text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a mark promises nothing about the bytes after it
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the bytes after the mark may still be invalid
   if (text.starts_with("\xFF\xFE")) return from_utf16(text, 2, false);
   if (text.starts_with("\xFE\xFF")) return from_utf16(text, 2, true);
   if (text.size() >= 4 && text[1] == '\0' && text[0] != '\0' && text[3] == '\0') return from_utf16(text, 0, false);

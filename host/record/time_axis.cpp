@@ -24,14 +24,14 @@ double median_step(const std::vector<double>& t_s) {
   return median(std::move(steps));
 }
 
-/// Error of a step due to rounding of the stamps alone: none if the period is a whole number of last digits.
+/// Error of a step due to rounding of the stamps alone. There is none if the period is a multiple of the last digit.
 double rounding_of_a_step(const TimeAxis& axis, double period_s) {
   if (!(axis.stamp_resolution_s > 0.0) || !std::isfinite(axis.stamp_resolution_s)) return 0.0;
   const double digits = period_s / axis.stamp_resolution_s;
   return std::abs(digits - std::round(digits)) < 1e-3 ? 0.0 : axis.stamp_resolution_s;
 }
 
-/// The period with as few digits as describe it, as a person would write it.
+/// The period rounded to as few digits as describe it, as a person would write it.
 double round_period(double period_s) {
   constexpr double kNear = 2e-3;
   for (int digits = 0; digits < 6; ++digits) {
@@ -125,7 +125,7 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
                     "record with axistool import --resample {:.6g}",
                     where(axis, spacing.worst_jitter_row), jitter, round_period(spacing.period_s)));
   if (header_period_s) return *header_period_s;
-  constexpr double kPerPicosecond = 1e12;  // finer digits are the rounding of the stamps, not the clock
+  constexpr double kPerPicosecond = 1e12;  // finer digits come from rounding of the stamps
   const double rounded = std::round(spacing.period_s * kPerPicosecond) / kPerPicosecond;
   return std::abs(rounded - spacing.period_s) < 0.01 * kPeriodTolerance * spacing.period_s ? rounded : spacing.period_s;
 }

@@ -15,7 +15,7 @@ namespace host::assets {
 
 namespace {
 
-/// A source map is of no use inside a report, and a browser would look for its file.
+/// Removes the reference to a source map. It is of no use in a report, and a browser would look for the file.
 std::string_view without_source_map(std::string_view text) {
   return text.substr(0,
                      std::min({text.size(), text.rfind("//# sourceMappingURL="), text.rfind("/*# sourceMappingURL=")}));

@@ -1,4 +1,4 @@
-// Files that every report contains; the build embeds them in the program.
+// Files that every report contains. The build embeds them in the program.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace host::assets {
 
 std::string_view dygraphs_script();      ///< dygraphs, minified (Debian: libjs-dygraphs)
-std::string_view synchronizer_script();  ///< its extra that joins zoom and cursor of several charts
+std::string_view synchronizer_script();  ///< its extra for common zoom and cursor of several charts
 std::string_view dygraphs_style();
 std::string_view heat_map_script();
 std::string_view report_script();

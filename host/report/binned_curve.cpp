@@ -36,7 +36,7 @@ void append_gap(BinnedCurve& curve, double x) {
   curve.samples.push_back(0.0);
 }
 
-/// Bins end at whole multiples of the width.
+/// The edges of the bins are whole multiples of the width.
 void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double width, std::size_t min_samples) {
   const auto cell = [&](std::size_t k) { return std::floor(stretch[k].first / width); };
   while (!stretch.empty()) {
@@ -52,7 +52,7 @@ void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double 
 
 double bin_width(double wanted, double period) {
   constexpr double kBinsAPeriod = 8.0;
-  constexpr double kMostFiner = 3.0;  // times as many bins as wanted, where they show the ripple
+  constexpr double kMostFiner = 3.0;  // at most so many times the wanted bins to show a ripple
   if (!(period > 0.0)) return wanted;
   if (kBinsAPeriod * wanted > kMostFiner * period) return period * std::ceil(wanted / period);
   return period / std::max(kBinsAPeriod, std::round(period / wanted));
@@ -60,7 +60,7 @@ double bin_width(double wanted, double period) {
 
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
                          std::size_t min_samples, double period) {
-  constexpr double kGap = 5.0;  // widths of a bin
+  constexpr double kGap = 5.0;  // bin widths
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k)
     if (std::isfinite(x[k]) && std::isfinite(y[k])) samples.emplace_back(x[k], y[k]);

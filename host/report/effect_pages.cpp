@@ -22,7 +22,7 @@ struct StageName {
   const char* heading;
 };
 
-/// In the order of the signal path.
+/// The stages in the order of the signal path.
 constexpr std::array kStages = {
     StageName{sim::Stage::command, "command", "Command and current loop"},
     StageName{sim::Stage::motor, "motor", "Motor"},
@@ -41,7 +41,7 @@ std::string_view first_sentence(std::string_view text) {
   return end == std::string_view::npos ? text : text.substr(0, end);
 }
 
-/// A value of the scale for an example: the paper's x drive, and a linear drive of some hundred newtons.
+/// An example value for a scale: the paper's x drive, and a linear drive of some hundred newtons.
 double example_size(sim::Scale scale, sim::DriveKind kind) {
   const bool rotary = kind == sim::DriveKind::rotary;
   switch (scale) {
@@ -82,12 +82,12 @@ double example_size(sim::Scale scale, sim::DriveKind kind) {
 }
 
 double example_value(const sim::ParameterInfo& parameter, sim::DriveKind kind) {
-  constexpr double kExamplePeriod = 10.0;  // of a harmonic, in the parameter's scale
+  constexpr double kExamplePeriod = 10.0;  // period of a harmonic, in the scale of the parameter
   const double start = parameter.starts.empty() ? kExamplePeriod : parameter.starts.front();
   return std::clamp(start * example_size(parameter.scale, kind), parameter.lower, parameter.upper);
 }
 
-/// The one-value form where there is one, else every parameter.
+/// The parameters of the form with one value for both directions, if there is one; otherwise every parameter.
 std::vector<const sim::ParameterInfo*> example_parameters(const sim::EffectInfo& info) {
   std::vector<std::string_view> replaced;
   for (const sim::ParameterInfo& parameter : info.parameters)

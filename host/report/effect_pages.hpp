@@ -9,17 +9,17 @@
 
 namespace host {
 
-/// Every kind with its title and one line on how it shows, grouped by its place in the drive's signal path.
+/// Every kind with its title and one line on how it shows, grouped by stage of the drive's signal path.
 std::string effect_list(const Terminal& terminal);
 
-/// The whole catalogue entry of one effect, with an example for each kind of drive.
+/// The complete catalogue entry of one effect, with an example for each kind of drive.
 std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal);
 
-/// An entry for a model file with values typical of a drive of some kilowatts. If one value may stand for both
-/// directions, that form is used.
+/// An entry for a model file, with values that are typical of a drive of some kilowatts. Uses the form with one value
+/// for both directions, if there is one.
 std::string effect_example_toml(const sim::EffectInfo& info, sim::DriveKind kind);
 
-/// "axis-effects/1": the whole catalogue, or the one effect.
+/// "axis-effects/1": the whole catalogue, or one effect.
 nlohmann::json effects_json();
 nlohmann::json effects_json(const sim::EffectInfo& info);
 

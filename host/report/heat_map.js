@@ -1,4 +1,5 @@
-// Draws a heat map on a canvas: the page's own colours, a scale beside it, the value at the cursor in the legend.
+// Draws a heat map on a canvas with the colours of the page, a colour scale beside it, and the value at the cursor in
+// the legend.
 function axisHeatMap(elements, map, resolved, formatted) {
   "use strict";
 
@@ -11,7 +12,7 @@ function axisHeatMap(elements, map, resolved, formatted) {
     return [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
   }
 
-  // From the paper's colour at zero to that of the sign at the limit; the root makes small values visible.
+  // From the paper's colour at zero to the colour of the sign at the limit. The root makes small values visible.
   function painter() {
     const [none, low, high] = ["var(--paper)", "var(--low)", "var(--high)"].map((name) => channels(resolved(name)));
     return function (value) {
@@ -21,7 +22,7 @@ function axisHeatMap(elements, map, resolved, formatted) {
     };
   }
 
-  // Round numbers, some five of them, inside [from, to].
+  // About five round numbers in [from, to].
   function ticks(from, to) {
     const raw = (to - from) / 5;
     const power = Math.pow(10, Math.floor(Math.log10(raw)));

@@ -16,7 +16,7 @@ std::string facts(const Facts& facts);
 
 enum class FrameWidth { full, half };
 
-/// The frame into which report.js draws plot number `index`; two frames of half width are side by side if there is
+/// The frame into which report.js draws plot number `index`. Two frames of half width are side by side if there is
 /// room.
 std::string plot_frame(std::size_t index, FrameWidth width, std::string_view title, std::string_view caption,
                        std::string_view hint);

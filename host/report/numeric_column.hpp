@@ -1,4 +1,4 @@
-// Finds the columns of a table that hold numbers, which are aligned right.
+// Finds the columns of a table that contain numbers, which are aligned right.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// True when every cell of the column starts with a number, a sign before a number, or a dash for "no value".
+/// Whether every cell of the column starts with a number, a sign before a number, or a dash for "no value".
 bool is_numeric_column(const Table& table, std::size_t column);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// A trace as text: four characters per sample.
+// A trace as text with four characters per sample.
 #pragma once
 
 #include <span>
@@ -6,8 +6,8 @@
 
 namespace host {
 
-/// Samples as base64 of 24-bit big-endian steps: value = lowest + code * step; code 0xFFFFFF is a gap (NaN). The
-/// quantisation step is the range / 16 777 214, far below what a screen or a sensor resolves.
+/// Samples as base64 of 24-bit big-endian codes: value = lowest + code * step; code 0xFFFFFF is a gap (NaN). The step
+/// is the range / 16 777 214, far below the resolution of a screen or a sensor.
 struct PackedSamples {
   double lowest = 0.0;
   double step = 0.0;

@@ -70,7 +70,7 @@ nlohmann::json panel_json(const TracePanel& panel, const std::vector<double>& t_
   for (std::size_t k = 0; k < traces.size(); ++k) {
     series.push_back({{"name", panel.traces[k].name},
                       {"colour", series_colour(panel.traces[k].role)},
-                      // Wide, so that a prediction on top of it leaves its edge to be seen.
+                      // A wide line, so that its edge remains visible below a prediction.
                       {"wide", panel.traces[k].role == SeriesRole::measured && traces.size() > 1},
                       {"y", packed_json(picked(traces[k], rows))}});
   }
@@ -80,7 +80,7 @@ nlohmann::json panel_json(const TracePanel& panel, const std::vector<double>& t_
           {"series", series}};
 }
 
-/// Rows sorted along x, without those whose x is no number, and thinned for drawing.
+/// Rows sorted by x and thinned for drawing, without rows whose x is NaN.
 std::vector<std::size_t> drawn_rows(const ScatterSeries& series) {
   std::vector<std::size_t> order(std::min(series.x.size(), series.y.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});

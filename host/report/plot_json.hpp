@@ -1,4 +1,4 @@
-// Plots as the data that report.js draws.
+// Plots as data for report.js.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace host {
 
-/// Traces packed (packed_samples.hpp) after decimation to at most `max_rows` rows a panel.
+/// Packed traces (packed_samples.hpp), decimated to at most `max_rows` rows per panel.
 nlohmann::json time_plot_json(const TimePlot& plot, std::size_t max_rows);
 
-/// Points with five significant digits, at most some thousand a series.
+/// Points with five significant digits, at most some thousand per series.
 nlohmann::json scatter_plot_json(const ScatterPlot& plot);
 
 /// Cells with four significant digits.

@@ -15,7 +15,7 @@ namespace host::html {
 
 namespace {
 
-constexpr double kSize = 560.0, kCentre = kSize / 2.0;  // of the picture, in its own units
+constexpr double kSize = 560.0, kCentre = kSize / 2.0;  // size of the picture, in its own units
 constexpr double kCircle = 160.0, kRing = 22.0;         // radius of the nominal circle; distance of two rings
 constexpr int kMostRings = 4;
 constexpr std::size_t kMostPoints = 4000;
@@ -28,7 +28,7 @@ double largest_um(const PolarPlot& plot) {
   return largest;
 }
 
-/// 1, 2 or 5 times a power of ten, so that the largest deviation takes kMostRings at most.
+/// A ring distance of 1, 2 or 5 times a power of ten, with which the largest deviation covers at most kMostRings rings.
 double ring_um(double largest) {
   if (!(largest > 0.0)) return 1.0;
   const double power = std::pow(10.0, std::floor(std::log10(largest / kMostRings)));
@@ -51,7 +51,7 @@ std::string rings(double step_um, int count) {
     fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", kCentre + (reach + 14.0) * x,
                    kCentre - (reach + 14.0) * y + 4.0, name);
   }
-  // The outermost, the nominal and the innermost ring have labels, away from the axes.
+  // The outermost, the nominal and the innermost ring have labels away from the axes.
   const double along = std::numbers::sqrt2 / 2.0;
   for (const int ring : {-count, 0, count}) {
     const double radius = kCircle + kRing * ring;

@@ -1,4 +1,4 @@
-// The picture of a PolarPlot: SVG within the page, so that it needs no script and prints sharply.
+// The picture of a PolarPlot: SVG in the page, so that it needs no script and prints sharply.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace host::html {
 
-/// A figure. The nominal circle has a fixed size. Deviations are drawn outwards and inwards from it, magnified so that
-/// the largest takes at most four rings; labels give the distance between rings.
+/// A figure with a nominal circle of fixed size. Deviations are drawn outwards and inwards from it, magnified so that
+/// the largest covers at most four rings. Labels give the distance between rings.
 std::string polar_plot(const PolarPlot& plot);
 
 }  // namespace host::html

@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// Interval of updates: short enough for the user, long enough to cost no time.
+/// Interval of updates: short enough for the user, long enough to take no noticeable time.
 constexpr std::chrono::milliseconds redraw_interval(100);
 constexpr const char* wipe_line = "\r\x1b[K";
 

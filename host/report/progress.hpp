@@ -1,4 +1,4 @@
-// A progress line for work that takes a while.
+// A progress line for long calculations.
 #pragma once
 
 #include <chrono>
@@ -10,10 +10,10 @@
 
 namespace host {
 
-/// One line, rewritten in place, on a terminal only (never in a log or a pipe), and only once the work has taken longer
-/// than `patience`. All functions may be called from several threads. The destructor erases the line. For programs, the
-/// environment variable AXIS_PROGRESS makes it lines of their own, on any stream and without patience: "progress SHARE
-/// WHAT", SHARE from 0 to 1.
+/// One line that is rewritten in place. It appears only on a terminal (never in a log or a pipe), and only after the
+/// work has taken longer than `patience`. All functions may be called from several threads. The destructor erases the
+/// line. For programs, the environment variable AXIS_PROGRESS makes separate lines of it, on any stream and without
+/// delay: "progress SHARE WHAT", SHARE from 0 to 1.
 class Progress {
  public:
   /// `total`: number of steps that advance() will count, > 0.
@@ -23,7 +23,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// Counts finished steps; `detail` (may be empty) names what was just done.
+  /// Counts finished steps. `detail` (may be empty) names the last one.
   void advance(std::size_t steps = 1, std::string_view detail = "");
 
   /// Adds steps to the total.

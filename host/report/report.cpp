@@ -18,14 +18,14 @@ namespace host {
 
 namespace {
 
-/// Below this no trace is decimated further: a screen shows it all.
+/// Traces with fewer rows are not decimated, because a screen shows them all.
 constexpr std::size_t fewest_rows = 2000;
 
 constexpr const char* zoom_hint =
     "Drag to zoom, drag with Shift to pan, double-click to see everything. The cursor is shared; a click sets its "
-    "reference, and Δ tells the differences.";
+    "reference, and Δ shows the differences.";
 
-/// The browser may use only the file's own scripts and styles; nothing is fetched.
+/// The browser may use only the scripts and styles in the file; nothing is fetched.
 constexpr const char* content_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
@@ -33,7 +33,7 @@ void require(bool condition, const std::string& plot, const std::string& what) {
   if (!condition) throw std::invalid_argument(fmt::format("plot \"{}\": {}", plot, what));
 }
 
-/// Writes each block and collects the data of those that a script draws.
+/// Writes each block, and collects the data of the blocks that a script draws.
 struct BlockWriter {
   std::size_t max_rows;
   std::string body = {};
@@ -121,7 +121,7 @@ std::size_t Report::rows_within_budget(std::size_t trace_budget) const {
     for (const Block& block : blocks_) {
       const auto* plot = std::get_if<TimePlot>(&block);
       if (plot == nullptr) continue;
-      // Every panel carries its own time column.
+      // Every panel has its own time column.
       for (const TracePanel& panel : plot->panels) {
         samples += std::min(plot->t_s.size(), max_rows) * (panel.traces.size() + 1);
       }

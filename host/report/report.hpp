@@ -1,4 +1,4 @@
-// One self-contained HTML file with zoomable plots, which also works offline and from a mail.
+// One self-contained HTML file with zoomable plots, which also works offline and as an attachment.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// Collects what to show, in reading order. All text is plain text: it is escaped on its way out.
+/// Collects the content in reading order. All text is plain text and is escaped on output.
 class Report {
  public:
   /// `subtitle`: names of the model and the records.
@@ -21,7 +21,7 @@ class Report {
   /// Begins a section; `text` (may be empty) explains it to the reader.
   void section(std::string heading, std::string text = "");
 
-  /// Figures and tables are added to the section begun last. Throws std::invalid_argument if the series of a plot have
+  /// Figures and tables are added to the last section. Throws std::invalid_argument if the series of a plot have
   /// different lengths.
   void add(TimePlot plot);
   void add(ScatterPlot plot);
@@ -31,10 +31,11 @@ class Report {
   void add(Table table);
   void add(Facts facts);
 
-  /// The whole file. Traces that together exceed `trace_budget` samples (4 bytes each in the file) are decimated.
+  /// The complete file. If the traces have more than `trace_budget` samples in total (4 bytes each in the file), they
+  /// are decimated.
   std::string html(std::size_t trace_budget = 400'000) const;
 
-  /// Writes html() through write_file_atomically; throws host::Failure as that does.
+  /// Writes html() by write_file_atomically. Throws as that does.
   void write(const std::string& path) const;
 
  private:

@@ -1,19 +1,19 @@
-// Draws plots with dygraphs into the frames "plot-N" that wait for them. A report carries their data in the element
-// "plots"; the workbench calls axisPlots.draw with those that it fetched.
+// Draws plots with dygraphs into the frames "plot-N". In a report, the element "plots" contains the data. The workbench
+// fetches the data and calls axisPlots.draw.
 (function () {
   "use strict";
 
   const GAP = 0xffffff;
-  // Rows drawn inside the visible range: some for each pixel of a wide screen. The samples themselves stay at hand, and
-  // zooming in brings out every one of them.
+  // Number of intervals drawn in the visible range, several for each pixel of a wide screen. All samples are kept, so
+  // zooming in shows every one of them.
   const VISIBLE_STRETCHES = 1500;
   const HIDDEN_STRETCHES = 200;
   const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
   const charts = [];
-  let zoomed = null; // told of every zoom by hand: of which plot in which frame, and from where to where
-  const recolour = []; // called when the page turns from light to dark, or is printed
+  let zoomed = null; // called after every manual zoom, with plot, frame and range
+  const recolour = []; // called when the page changes between light and dark, or is printed
 
-  // "var(--name)" as the colour that the page's scheme gives it now.
+  // Replaces "var(--name)" by its colour in the present colour scheme.
   function resolved(colour) {
     const name = /^var\((--[a-z-]+)\)$/.exec(colour);
     return name ? getComputedStyle(document.documentElement).getPropertyValue(name[1]).trim() : colour;
@@ -29,7 +29,7 @@
     return values;
   }
 
-  // The first row whose x is not below the limit; x ascends.
+  // The first row whose x is not below the limit; x must ascend.
   function firstRowFrom(x, limit) {
     let low = 0;
     let high = x.length;
@@ -41,7 +41,7 @@
     return low;
   }
 
-  // Adds the rows of [from, to) that hold the extremes of each stretch, so that no spike is lost.
+  // Adds the rows of [from, to) with the extremes of each interval, so that no spike is lost.
   function pushExtremes(columns, from, to, stretches, rows) {
     if (to - from <= 3 * stretches) {
       for (let row = from; row < to; row++) rows.push(row);
@@ -69,7 +69,8 @@
     }
   }
 
-  // Rows for dygraphs: fine inside the window, coarse outside, so that a reset of the zoom has something to show.
+  // Rows for dygraphs: fine inside the window, coarse outside, so that the whole range can be shown after a reset of
+  // the zoom.
   function drawnRows(x, columns, window) {
     const from = window ? Math.max(0, firstRowFrom(x, window[0]) - 1) : 0;
     const to = window ? Math.min(x.length, firstRowFrom(x, window[1]) + 1) : x.length;
@@ -120,7 +121,8 @@
     };
   }
 
-  // From the reference that a click has set: along x, and of seconds the frequency whose period it is.
+  // Distance from the reference that was set by a click: along x and, if x is in seconds, also the frequency with this
+  // period.
   function distance(plot, x, xUnit) {
     if (!plot.reference || x === plot.reference.x) return "";
     const apart = x - plot.reference.x;
@@ -139,7 +141,7 @@
     return values;
   }
 
-  // A click sets the reference of all panels of a plot; a click on it takes it away.
+  // A click sets the reference in all panels of a plot. A click on the reference removes it.
   function mark(plot, chart, x) {
     const near = plot.reference && Math.abs(chart.toDomXCoord(plot.reference.x) - chart.toDomXCoord(x)) < 6;
     plot.reference = near ? null : { x: x, values: new Map() };
@@ -169,7 +171,7 @@
     return chart;
   }
 
-  // What a reader who does not see the plot is told: what is drawn, and between which values.
+  // Description for screen readers: what is drawn, and its range of values.
   function spoken(label, xLabel, series) {
     const ranges = series.map(function (one) {
       const values = one.values.filter((value) => value !== null && isFinite(value));
@@ -209,7 +211,7 @@
     return elements;
   }
 
-  // How many samples stand behind each point, as grey columns at the foot; the tallest is the fullest bin of the plot.
+  // The number of samples per point, as grey columns at the bottom. The tallest column is the fullest bin of the plot.
   function drawSampleStrip(context, area, chart, series) {
     const most = Math.max(...series.flatMap((one) => one.samples || [0]));
     if (!(most > 0)) return;
@@ -222,7 +224,7 @@
       });
   }
 
-  // Behind the traces: the shaded spans, a line at zero, and the reference.
+  // Background of the traces: the shaded spans, a line at zero, and the reference.
   function background(plot, spans, series) {
     return function (context, area, chart) {
       if (plot.reference) {
@@ -327,12 +329,12 @@
     };
   }
 
-  // One row for each x of any series; null where a series has no point there, NaN where it has a gap.
+  // One row for each x of any series: null if a series has no point there, NaN if it has a gap.
   function mergedRows(plot, withBars) {
     const rows = new Map();
     plot.series.forEach(function (series, index) {
       series.x.forEach(function (x, k) {
-        // A second point at the same x needs a row of its own.
+        // A second point at the same x needs another row.
         let row = (rows.get(x) || []).find((candidate) => candidate[index + 1] === null);
         if (!row) {
           row = [x, ...plot.series.map(() => null)];
@@ -368,7 +370,7 @@
     if (plot.equal) equaliseScales(chart, plot);
   }
 
-  // Whether x and y are logarithmic, and how to change it: magnitudes then, without bars.
+  // Whether x and y are logarithmic, and functions to change it. Logarithmic axes show magnitudes without bars.
   function scalesOf(chart, plot, withBars) {
     const scales = { x: Boolean(plot.logarithmicX), y: Boolean(plot.logarithmic) };
     const magnitude = (value) => (value === null ? null : Math.abs(value));
@@ -391,7 +393,7 @@
     return scales;
   }
 
-  // A unit of x as long as a unit of y: at first, with the drawing in the middle, and after every zoom, resize and reset.
+  // Equal scales of x and y: at first with the drawing in the middle, and after every zoom, resize and reset.
   function equaliseScales(chart, plot) {
     const range = function (name) {
       const values = plot.series.flatMap((series) => series[name]).filter((value) => value !== null);
@@ -409,15 +411,15 @@
       (vertical[1] - vertical[0]) / chart.getArea().h,
     ];
     const whole = () => show(1.08 * Math.max(...lengths(x, y)), x, y);
-    // Dragging zooms one axis, which is the one with the shorter unit now; a reset forgets the window of x.
+    // Dragging zooms one axis, which then has the shorter unit. A reset forgets the window of x.
     const zoomed = () => show(Math.min(...lengths(chart.xAxisRange(), chart.yAxisRange())), chart.xAxisRange(), chart.yAxisRange());
     chart.updateOptions({ zoomCallback: () => (chart.isZoomed("x") ? zoomed() : whole()) });
     whole();
-    const resized = () => (chart.resize(), whole()); // dygraphs itself hears of the window's size alone
+    const resized = () => (chart.resize(), whole()); // dygraphs itself reacts only to the size of the window
     new ResizeObserver(resized).observe(chart.graphDiv.parentElement);
   }
 
-  // Draws each plot into its frame; what it returns takes them away again. `onZoom` may be absent.
+  // Draws each plot into its frame; returns a function that removes the plots. `onZoom` may be absent.
   function draw(plots, frames, onZoom) {
     zoomed = onZoom || null;
     const drawn = charts.length;
@@ -437,7 +439,7 @@
   }
   for (const query of ["(prefers-color-scheme: dark)", "print"])
     matchMedia(query).addEventListener("change", () => recolour.forEach((again) => again()));
-  // What report.css prints by: the width of the contents, and how much smaller they fit a page in landscape.
+  // Values for printing by report.css: the width of the contents, and the factor by which they fit a page in landscape.
   function notePrintSize() {
     const main = document.querySelector("main");
     const style = getComputedStyle(main);

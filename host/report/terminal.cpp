@@ -20,7 +20,7 @@ constexpr int default_columns = 100;
 constexpr int fewest_columns = 40;
 constexpr int widest_bar = 48;
 
-/// Characters that a reader sees: UTF-8 continuation bytes do not count.
+/// Number of visible characters: UTF-8 continuation bytes do not count.
 int visible_width(std::string_view text) {
   return static_cast<int>(std::count_if(
       text.begin(), text.end(), [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0U) != 0x80U; }));
@@ -42,7 +42,7 @@ std::string without_trailing_blanks(std::string line) {
   return line;
 }
 
-/// `share` of `width` cells in eighths of a cell; `mark_cell` (negative: none) carries the reference.
+/// A bar of `share` of `width` cells, in eighths of a cell. The reference is at `mark_cell` (negative: no reference).
 std::string bar_text(double share, int width, int mark_cell) {
   static constexpr const char* eighths[] = {" ", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
   const int filled = static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * width * 8));

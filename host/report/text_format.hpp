@@ -7,26 +7,26 @@
 
 namespace host {
 
-/// Safe inside HTML elements and quoted attributes.
+/// Escapes text for HTML elements and quoted attributes.
 std::string escape_html(std::string_view text);
 
-/// JSON that is safe inside a <script> element: it holds no '<', so user text can end neither element nor comment.
+/// JSON that is safe in a <script> element: it contains no '<', so that user text cannot end an element or a comment.
 /// Text that is not UTF-8 is shown with replacement characters.
 std::string script_safe_json(const nlohmann::json& value);
 
-/// With a capital letter at its beginning.
+/// The text with a capital first letter.
 std::string capitalised(std::string text);
 
-/// One word of a command line that a reader may paste into a shell: quoted where it holds anything unusual.
+/// One word of a command line that can be pasted into a shell. It is quoted if it contains unusual characters.
 std::string shell_word(std::string_view text);
 
-/// A number for people: `digits` significant digits, no exponent between 0.001 and 1 000 000; "–" when not finite.
+/// A number for readers: `digits` significant digits, no exponent between 0.001 and 1 000 000; "–" if not finite.
 std::string format_value(double value, int digits = 3);
 
-/// `value` rounded to `digits` significant digits, so that it prints shortly.
+/// `value` rounded to `digits` significant digits, so that its text is short.
 double rounded_to_digits(double value, int digits);
 
-/// A name with spaces for underscores: "travel since reversal".
+/// A name with spaces instead of underscores: "travel since reversal".
 std::string spaced(std::string name);
 
 }  // namespace host

@@ -26,7 +26,7 @@ constexpr std::size_t kFewestReadings = 4, kMostReadings = 500;
 
 struct DialColumn {
   std::size_t place = 0;
-  double mm = 0.0;  ///< per unit
+  double mm = 0.0;  ///< mm per unit
 };
 
 class DialFile {
@@ -73,7 +73,7 @@ class DialFile {
     const std::optional<double> value = parse_number(fields_[column.place]);
     constexpr double kFarthest_mm = 1e5;
     if (!value || !(std::abs(*value * column.mm) <= kFarthest_mm))
-      fail(fmt::format("'{}' is no number within 100 m", fields_[column.place].substr(0, 40)));
+      fail(fmt::format("'{}' is not a number within 100 m", fields_[column.place].substr(0, 40)));
     return *value * column.mm;
   }
 
@@ -86,9 +86,9 @@ class DialFile {
     const double slope = moved.dot(dial) / moved.squaredNorm();
     if (slope < 0.0)
       for (double& one : readings_.dial_mm) one = -one;
-    // Backlash may take a large part of a move of a few hundredths of a millimetre.
+    // Backlash may be a large part of a move of a few hundredths of a millimetre.
     if (!(std::abs(slope) > 0.2) || std::abs(slope) > 2.0)
-      fail(fmt::format("the gauge moves by {:.3g} of what the axis does: is the unit right?", slope));
+      fail(fmt::format("the gauge moves {:.3g} times as far as the axis; check the unit", slope));
   }
 
   std::string_view rest_, name_, line_;
@@ -98,7 +98,7 @@ class DialFile {
   DialReadings readings_;
 };
 
-/// Lag of a table with this play (mm) behind the motor, um. `first`: its initial position in the play, -1 to 1.
+/// Lag in um of a table with this play (mm) behind the motor. `first`: its initial position in the play, -1 to 1.
 VectorXd play(const DialReadings& readings, double width, double first) {
   VectorXd behind(static_cast<Index>(readings.x_mm.size()));
   const double half = 0.5 * width;
@@ -112,7 +112,7 @@ VectorXd play(const DialReadings& readings, double width, double first) {
 }
 
 struct DialFit {
-  VectorXd factors;  ///< offset um, lead um/m where it is free
+  VectorXd factors;  ///< offset, um; lead, um/m, if it is free
   double square = 0.0, lead_deviation = 0.0;
 };
 
@@ -133,7 +133,7 @@ DialFit fitted_from(const DialReadings& readings, double width, double first, bo
   return fit;
 }
 
-/// The initial position of the table in its play is unknown.
+/// The best fit over the initial position of the table in its play, which is unknown.
 DialFit fitted(const DialReadings& readings, double width, bool lead) {
   if (width == 0.0) return fitted_from(readings, width, 0.0, lead);
   DialFit best;
@@ -173,12 +173,13 @@ DialStudy study_dial(const DialReadings& readings) {
   study.reversals = reversals_of(readings.x_mm);
   const auto n = static_cast<double>(readings.x_mm.size());
   const auto [low, high] = std::ranges::minmax(readings.x_mm);
-  // Upper bound of the play: one as wide as the travel would not move the table at all, and no machine loses 5 mm.
+  // Upper bound of the play: with a play as wide as the travel the table would not move at all, and no machine loses 5
+  // mm.
   constexpr double kWidest_mm = 5.0;
   const double widest = study.reversals > 0 ? std::min(kWidest_mm, high - low) : 0.0;
   constexpr int kWidths = 1500;
   const auto width_at = [&](int step) { return widest * std::pow(static_cast<double>(step) / kWidths, 3); };
-  // Readings are not finer than the step of the gauge.
+  // The resolution of the readings is the step of the gauge.
   const double least = n * std::pow(1e3 * smallest_step(readings.dial_mm), 2) / 12.0 + 1e-12;
   std::vector<double> squares[2];
   for (const bool lead : {false, true})
@@ -201,7 +202,7 @@ DialStudy study_dial(const DialReadings& readings) {
   const int at = best(has_lead);
   const DialFit fit = fitted(readings, width_at(at), has_lead);
   study.noise_um = std::sqrt(of[static_cast<std::size_t>(at)] / n);
-  // Widths whose likelihood is within that of the 95 % interval.
+  // Widths with a likelihood within the 95 % interval.
   const double limit = of[static_cast<std::size_t>(at)] * std::exp(kNormal95 * kNormal95 / n);
   int first = at, last = at;
   while (first > 0 && of[static_cast<std::size_t>(first - 1)] <= limit) --first;
@@ -221,22 +222,23 @@ std::string dial_words(const DialStudy& study) {
   const DialValue& lost = study.lost_um;
   if (study.reversals == 0)
     words =
-        "The axis never reverses in these readings, so they do not show what is lost at a reversal. Approach some "
-        "positions from both sides.";
+        "The axis never reverses in these readings, so they do not show the lost motion. Approach some positions from "
+        "both sides.";
   else if (lost.probability >= kClaimed)
     words = fmt::format(
-        "At a reversal the table loses {:.3g} um (95 %: {:.3g} to {:.3g}) of the motor's travel. That is the gap and "
-        "twice the bend by the table's friction together: backlash, compliance, or both. Readings with the table "
-        "pushed by hand tell them apart: a gap moves freely, a spring needs force.",
+        "At a reversal the table loses {:.3g} um (95 %: {:.3g} to {:.3g}) of the motor's travel. That is the sum of "
+        "the gap and twice the deflection by the table's friction: backlash, compliance, or both. Pushing the table by "
+        "hand tells them apart: a gap moves freely, a spring needs force.",
         lost.value, lost.ci95[0], lost.ci95[1]);
   else if (lost.probability <= 1.0 - kClaimed)
     words = fmt::format("At a reversal the table follows the motor within {:.3g} um: neither backlash nor compliance.",
                         lost.ci95[1]);
   else
     words = fmt::format(
-        "Between nothing and {:.3g} um are lost at a reversal: these readings do not decide. Take more.", lost.ci95[1]);
+        "At a reversal the table loses between 0 and {:.3g} um: too uncertain to decide. Take more readings.",
+        lost.ci95[1]);
   if (study.lead_um_per_m.probability >= kClaimed)
-    words += fmt::format(" The table goes {:.3g} um per metre (95 %: {:.3g} to {:.3g}) too far: a pitch error.",
+    words += fmt::format(" The table moves {:.3g} um per metre (95 %: {:.3g} to {:.3g}) too far: a pitch error.",
                          study.lead_um_per_m.value, study.lead_um_per_m.ci95[0], study.lead_um_per_m.ci95[1]);
   return words + fmt::format(" Readings scatter by {:.2g} um.", study.noise_um);
 }

@@ -20,11 +20,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDegrees = 4.0;  // of the t distribution: see infer/evidence.hpp
+constexpr double kDegrees = 4.0;  // degrees of freedom of the t distribution, see infer/evidence.hpp
 
 std::vector<DriveRange> free_numbers(const TableDrive& drive, double deceleration) {
   std::vector<DriveRange> numbers = shape_ranges(drive, deceleration);
-  // Bounds of sizes are those of machines: 1 mm of free travel, and 3 Hz to 3 kHz with the motor held.
+  // Bounds of real machines: 1 mm of free travel, and resonances of 3 Hz to 3 kHz with the motor held.
   if (drive.gap > 0.0) numbers.push_back({DriveNumber::gap, std::log(1e-5), std::log(1.0), 0.02, 0.0, HUGE_VAL});
   if (drive.lag > 0.0) numbers.push_back({DriveNumber::lag, std::log(2.8e-9), std::log(2.8e-3), 0.02, 0.0, HUGE_VAL});
   return numbers;
@@ -40,7 +40,7 @@ class Remainder {
     taken_ = factors.householderQ() * MatrixXd::Identity(white.rows(), factors.rank());
   }
 
-  /// One column a drive.
+  /// One column per drive.
   MatrixXd of(std::span<const TableDrive> drives) const {
     MatrixXd left(rows_.size(), static_cast<Index>(drives.size()));
     const std::vector<DrivenRows> driven = drive_tables(drives, rows_);
@@ -49,7 +49,7 @@ class Remainder {
     return white - taken_ * (taken_.transpose() * white);
   }
   VectorXd of(const TableDrive& drive) const { return of(std::span(&drive, 1)); }
-  /// Of a table that follows the motor.
+  /// The residual for a table that follows the motor.
   VectorXd of_none() const {
     const VectorXd white = evidence_.whiten(rows_.y, colour_);
     return white - taken_ * (taken_.transpose() * white);
@@ -112,7 +112,7 @@ class DriveCost : public ceres::CostFunction {
   }
 
  private:
-  /// One column each.
+  /// One column per point.
   MatrixXd at_numbers(const MatrixXd& points) const {
     std::vector<TableDrive> drives(static_cast<std::size_t>(points.cols()), start_);
     MatrixXd all(num_residuals(), points.cols());
@@ -134,7 +134,7 @@ class DriveCost : public ceres::CostFunction {
   double scale_;
 };
 
-/// At the scale of the noise at its start.
+/// Fits with the noise scale of the start.
 TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, const Remainder& remainder, Index rows,
                    int iterations) {
   const double scale = remainder.scale_of(remainder.of(drive));
@@ -161,8 +161,8 @@ TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, con
   return drive;
 }
 
-/// Drives around one, in the least determined directions: along each principal axis of the information, and between
-/// them, from one standard deviation to many. The drive itself is the first.
+/// Drives near a given one, in the directions that are determined least: along each principal axis of the information,
+/// and between two of them, from one standard deviation to many. The first is the drive itself.
 std::vector<TableDrive> cloud_about(const TableDrive& drive, const std::vector<DriveRange>& numbers,
                                     const Remainder& remainder, Index rows) {
   const auto count = static_cast<Index>(numbers.size());
@@ -221,8 +221,8 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     least = costs.front().first;
   };
   price(0);
-  // Between sizes with equal lost motion at a reversal there are worse ones, so the best of each gap, or of each
-  // spring, continues.
+  // Drives with equal lost motion at a reversal have worse ones between them. So the best start for each gap, or for
+  // each spring, is kept.
   std::vector<TableDrive> best_of_each;
   for (const TableDrive& start : starts)
     if (std::ranges::none_of(best_of_each, [&](const TableDrive& kept) {
@@ -230,8 +230,8 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
         }))
       best_of_each.push_back(start);
   starts = std::move(best_of_each);
-  constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // starts that go on, iterations
-  // A drive that does not fit better than a table that follows the motor once it moves is rejected.
+  constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // kept starts, iterations
+  // A new drive is rejected if it does not fit better than a table that follows the motor once it moves.
   const double most = is_new ? remainder.cost_of(remainder.of_none()) : HUGE_VAL;
   const auto go_on = [&] {
     for (const auto& [kept, iterations] : kRounds) {
@@ -241,13 +241,13 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     }
   };
   go_on();
-  // Because a table sticks, slides and touches, there are worse fits between the best ones.
+  // A table sticks, slides and touches, so there are worse fits between the best ones.
   constexpr int kClouds = 3;
   for (int cloud = 0; cloud < kClouds && least < most; ++cloud) {
     const double before = least;
     starts = cloud_about(starts.front(), numbers, remainder, rows.size());
     price(0);
-    // A fit that only follows changes of other terms continues from a better drive of the cloud.
+    // A fit that only follows changes of other terms continues only if a drive of the cloud is better.
     if (!is_new && !(least < before - 1.0)) break;
     starts.resize(std::min<std::size_t>(is_new ? 2 : 1, starts.size()));
     price(12);

@@ -1,4 +1,4 @@
-// Gap, spring, friction and drag of a driven table by one joint fit.
+// Joint fit of gap, spring, friction and drag of a driven table.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +10,9 @@
 namespace host {
 
 /// The most probable table within bounds, fitted together with columns whose factors are free. Either all starts have a
-/// gap or none has; the same for a spring. A part that they lack is not added. Levenberg-Marquardt (Ceres) from the
-/// best few of them, with the noise of infer/evidence.hpp of this colour. `deceleration`: see shape_ranges(). Starts
-/// are at least one.
+/// gap or none has; the same holds for a spring. A gap or spring that the starts lack is not added. Levenberg-Marquardt
+/// (Ceres) from the best few starts, with the noise of infer/evidence.hpp of this colour. `deceleration`: see
+/// shape_ranges(). Needs at least one start.
 TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, const Evidence& evidence,
                      const Eigen::MatrixXd& others, const NoiseColour& colour, double deceleration);
 

@@ -8,16 +8,17 @@ namespace host {
 
 namespace {
 
-/// At every sample, mm: table minus motor, and the spring's part of it.
+/// Values at every sample, mm: table minus motor, and the part of it in the spring.
 struct DrivenSamples {
   std::vector<double> all, spring;
 };
 
-/// Tables that are simulated in parallel, without branches, which a processor could not predict.
+/// Number of tables that are simulated in parallel (SIMD). The code has no branches, because their directions would
+/// differ.
 constexpr std::size_t kAbreast = 8;
 using Abreast = Eigen::Array<double, kAbreast, 1>;
 
-/// From drives[first] on; if there are fewer, the last one is repeated.
+/// The values of one member for drives[first] and the following ones. If there are too few, the last one is repeated.
 Abreast abreast(std::span<const TableDrive> drives, std::size_t first, double TableDrive::*member) {
   Abreast values;
   for (std::size_t lane = 0; lane < kAbreast; ++lane)
@@ -25,13 +26,13 @@ Abreast abreast(std::span<const TableDrive> drives, std::size_t first, double Ta
   return values;
 }
 
-/// The part beyond a band about zero.
+/// The part of a value outside a band about zero.
 [[gnu::always_inline]] inline Abreast beyond(const Abreast& value, const Abreast& band) {
   return value - value.min(band).max(-band);
 }
 
-/// A contact without a spring: the table has the motor's speed where they touch, and slides on from there when the
-/// motor slows down more.
+/// A contact without a spring: while they touch, the table has the speed of the motor. It slides on when the motor
+/// decelerates more than the table.
 void rigid(std::span<const TableDrive> drives, std::size_t first, const std::vector<double>& motor, double period_s,
            std::span<DrivenSamples> found) {
   const Abreast half = 0.5 * abreast(drives, first, &TableDrive::gap),
@@ -51,7 +52,8 @@ void rigid(std::span<const TableDrive> drives, std::size_t first, const std::vec
   }
 }
 
-/// Semi-implicit steps of a quarter of a radian at most; friction takes speed away at most, and then holds.
+/// Semi-implicit steps of at most a quarter of a radian. Friction can only reduce the speed to zero and then holds the
+/// table.
 void sprung(std::span<const TableDrive> drives, std::size_t first, const std::vector<double>& motor, double period_s,
             std::span<DrivenSamples> found) {
   constexpr double kRadians = 0.25, kAnyPull = 1e30;
@@ -60,7 +62,7 @@ void sprung(std::span<const TableDrive> drives, std::size_t first, const std::ve
                 damping = 2.0 * omega * abreast(drives, first, &TableDrive::damping),
                 deceleration = abreast(drives, first, &TableDrive::deceleration),
                 drag = abreast(drives, first, &TableDrive::drag);
-  // A contact behind a gap only pushes; a bolted connection also pulls.
+  // With a gap, the contact only pushes; a bolted connection also pulls.
   const Abreast bolted = (half > 0.0).select(Abreast::Zero(), Abreast::Constant(kAnyPull));
   const int parts = std::max(1, static_cast<int>(std::ceil(omega.maxCoeff() * period_s / kRadians)));
   const double step = period_s / parts;
@@ -83,7 +85,7 @@ void sprung(std::span<const TableDrive> drives, std::size_t first, const std::ve
   }
 }
 
-/// Change of the reading by this delay, mm.
+/// Delays the values by this time, mm.
 void delay(std::vector<double>& values, double late_s, double period_s) {
   if (late_s == 0.0 || values.size() < 3) return;
   const std::vector<double> before = values;
@@ -133,8 +135,9 @@ void set_number(TableDrive& drive, DriveNumber which, double value) {
 }
 
 std::vector<DriveRange> shape_ranges(const TableDrive& drive, double deceleration) {
-  // A table has the larger part of the friction and any part of the inertia: its deceleration is within some times that
-  // of the whole drive. Guideways slow a table by a few 1/s; a bolted contact is damped by some hundredths (textbook).
+  // The table has the larger part of the friction and any part of the inertia, so its deceleration is up to several
+  // times that of the whole drive. Guideways decelerate a table by a few 1/s; a bolted contact has a damping ratio of
+  // some hundredths (textbook).
   const bool is_known = deceleration > 0.0;
   std::vector<DriveRange> ranges = {{DriveNumber::deceleration, std::log(1.0), std::log(1e5), 0.03,
                                      std::log(is_known ? 2.0 * deceleration : 1e3), is_known ? 0.7 : 2.0},

@@ -29,7 +29,7 @@ std::string in_words(const TableSize& size) {
   return fmt::format("{:.4g} {} (95 %: {:.4g} to {:.4g})", size.value, size.unit, size.ci95[0], size.ci95[1]);
 }
 
-/// Amplitude of a wave from its two factors, with its deviation.
+/// Amplitude of a wave and its standard deviation, from its two factors.
 TableSize amplitude_of(std::string name, const VectorXd& factors, const MatrixXd& covariance) {
   const double value = factors.norm();
   const VectorXd along = factors / std::max(value, 1e-12);
@@ -40,10 +40,11 @@ double turn_of(const sim::DataSheet& data) {
   return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
 }
 
-/// Discs, couplings, pole pairs and resolvers err a few times a turn; a grating may be any part of it by chance.
+/// Discs, couplings, pole pairs and resolvers have an error a few times per turn. A grating may have it with any
+/// period.
 constexpr int kFewParts = 8;
 
-/// A turn of the motor, a half, a third, …: within what the travel resolves. Empty where it is none.
+/// n if the period is a turn of the motor divided by n, within the resolution of the travel; empty otherwise.
 std::optional<int> part_of_a_turn(double period, const TableRows& rows, double turn) {
   constexpr int kMostParts = 512;
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
@@ -68,7 +69,7 @@ void fill_pitch(const TableTerm& term, const VectorXd& factors, const MatrixXd& 
     }
   }
   const MatrixXd centred = at.rowwise() - at.colwise().mean();
-  // Slope of the whole curve: a linear function of the factors.
+  // Slope of the whole curve, a linear function of the factors.
   const VectorXd slope = (centred.transpose() * centred.col(0)) / centred.col(0).squaredNorm();
   effect.sizes.push_back(size("lead_error", "um/m", slope.dot(factors), std::sqrt(slope.dot(covariance * slope))));
   const VectorXd curve = centred * factors;
@@ -82,7 +83,7 @@ void fill_pitch(const TableTerm& term, const VectorXd& factors, const MatrixXd& 
   effect.sizes.push_back(size("spread", "um", spread, std::numbers::sqrt2 * deviation));
   std::vector<sim::HarmonicTerm> harmonics;
   for (int order = 1; order <= kPitchOrders; ++order) {
-    // From waves about the middle of the travel to waves about zero.
+    // Converts waves about the middle of the travel to waves about zero.
     const double turn = 2.0 * std::numbers::pi * order * term.shape[0] / period;
     const double c = factors(2 * order - 1), s = factors(2 * order);
     harmonics.push_back({static_cast<double>(order), to_unit * (c * std::cos(turn) - s * std::sin(turn)),
@@ -95,15 +96,15 @@ void fill_pitch(const TableTerm& term, const VectorXd& factors, const MatrixXd& 
                              in_words(effect.sizes[0]), spread, high - low);
 }
 
-/// `own`: covariance of the term's factors, the lag in um a mm/s^2 first, then the logarithm of the deceleration.
+/// `own`: covariance of the term's factors: first the lag in um per mm/s^2, then the logarithm of the deceleration.
 void fill_compliance(const TableTerm& term, const MatrixXd& own, const sim::DriveDescription& model,
                      TableEffect& effect) {
   const double lag = 1e3 * term.drive.lag, lag_off = std::sqrt(own(0, 0)) / lag;  // relative
   const double resonance = 1.0 / (2.0 * std::numbers::pi * std::sqrt(term.drive.lag));
   const sim::Drive drive(model);
-  // The motor's motion determines the ratio of the table's friction to its inertia; the friction comes from the model.
-  // Bearings and seals of the motor have a tenth of a drive's friction, with an uncertainty of the same size
-  // (textbook).
+  // The motion of the motor determines the ratio of the table's friction to its inertia; the friction comes from the
+  // model. Bearings and seals of the motor have a tenth of the friction of a drive, with an uncertainty of the same
+  // size (textbook).
   constexpr double kMotorsFriction = 0.1;
   const double friction = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) * (1.0 - kMotorsFriction);
   if (friction > 0.0) {
@@ -111,7 +112,7 @@ void fill_compliance(const TableTerm& term, const MatrixXd& own, const sim::Driv
     const double value = lag * term.drive.deceleration / friction;
     const double off = value * std::hypot(lag_off, std::sqrt(own(1, 1)), kMotorsFriction);
     effect.sizes.push_back(size("compliance", rotary ? "um/Nm" : "um/N", value, off));
-    const double force = 1e-3 * model.data.lead;  // Nm a N
+    const double force = 1e-3 * model.data.lead;  // Nm per N
     if (rotary) effect.sizes.push_back(size("compliance_by_force", "um/N", value * force, off * force));
   }
   effect.sizes.push_back(size("resonance", "Hz", resonance, 0.5 * resonance * lag_off));
@@ -154,8 +155,8 @@ MatrixXd factor_covariance(const EvidenceFit& fit, Index base, const std::vector
                            const TableRows& rows, double usual) {
   const Index known = fit.factors.size();
   const MatrixXd inverse = fit.information.solve(MatrixXd::Identity(fit.whitened.cols(), fit.whitened.cols()));
-  // Model errors of a reversal are correlated over the whole stroke after it, so strokes are the clusters
-  // (cluster-robust; Liang and Zeger, Biometrika 73 (1986) 13-22). Never less than the uncertainty due to noise alone.
+  // After a reversal, model errors are correlated over the whole stroke, so strokes are the clusters (cluster-robust;
+  // Liang and Zeger, Biometrika 73 (1986) 13-22). The result is at least the uncertainty due to noise.
   MatrixXd scores(0, fit.whitened.cols());
   for (Index k = 0; k < rows.size(); ++k) {
     const bool begins = k == 0 || rows.way(k) != rows.way(k - 1) ||
@@ -203,20 +204,19 @@ TableEffect table_effect(const TableTerm& term, const EvidenceFit& fit, const Ma
     effect.sizes.push_back({"period", "mm", term.shape[0], {term.shape[0], term.shape[0]}});
     effect.words =
         fmt::format("cyclic error of {} every {:.5g} mm{}", in_words(effect.sizes[0]), term.shape[0],
-                    !part                ? ": of the scale, no part of a motor turn"
+                    !part                ? ": of the scale, because it is not a fraction of a motor turn"
                     : *part == 1         ? ", once a motor turn: of the motor's encoder or of the screw"
                     : *part <= kFewParts ? fmt::format(", {} times a motor turn: of the motor's encoder", *part)
                                          : fmt::format(", {} times a motor turn: of the scale or of the motor's "
-                                                       "encoder, which a scale of another grating decides",
+                                                       "encoder; a scale with another grating would tell",
                                                        *part));
     const double sign = effect.place == "motor" ? -to_unit : to_unit;
     effect.entry.parameters = {
         {"cosine", sign * factors(0)}, {"sine", sign * factors(1)}, {"period", 1e3 * to_unit * term.shape[0]}};
   } else {
-    // An effect that is equal over the whole travel has no place.
+    // An effect that is equal over the whole travel cannot be located.
     constexpr std::string_view kWhere =
-        ": of the screw, of its bearing or of the scale's own mount; one scale does not tell them apart, a thermometer "
-        "on each does";
+        ": of the screw, of its bearing or of the scale's own mount; a thermometer on each can tell them apart";
     Index most = 0;
     factors.cwiseAbs().maxCoeff(&most);
     const double deviation = std::sqrt(own(most, most));
@@ -239,12 +239,12 @@ std::string table_words(const TableStudy& study) {
   for (const TableEffect& effect : study.effects)
     parts.push_back(
         effect.words +
-        (effect.group.size() > 1 ? fmt::format(" (or {}: these records do not tell)", spaced(effect.group[1])) : "") +
+        (effect.group.size() > 1 ? fmt::format(" (or {}: these records cannot tell)", spaced(effect.group[1])) : "") +
         (effect.worth_naming ? "" : " (certain, but too small to matter here)"));
   if (parts.empty())
-    return fmt::format("The table follows the motor's encoder within {:.3g} um RMS; nothing shows between them.",
+    return fmt::format("The table follows the motor's encoder within {:.3g} um RMS; no effect is found between them.",
                        study.before_um);
-  return fmt::format("Measured on the table (x2 - x): {}. That takes x2 - x from {:.3g} to {:.3g} um RMS.",
+  return fmt::format("Measured on the table (x2 - x): {}. Together they reduce x2 - x from {:.3g} to {:.3g} um RMS.",
                      fmt::join(parts, "; "), study.before_um, study.left_um);
 }
 

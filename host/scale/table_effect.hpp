@@ -5,13 +5,13 @@
 
 namespace host {
 
-/// Whether the model has this kind already.
+/// Whether the model already has an effect of this kind.
 bool stands_in(const sim::DriveDescription& model, std::string_view kind);
 
-/// Subtracts the model's errors of scale, encoder and screw and its thermal growth from the rows.
+/// Subtracts the errors of scale, encoder and screw and the thermal growth in the model from the rows.
 void take_out_known(const sim::DriveDescription& model, TableRows& rows);
 
-/// The sensor with a cyclic error: "motor", "scale", "scale or motor".
+/// The sensor with a cyclic error: "motor", "scale" or "scale or motor".
 std::string place_of(const TableTerm& term, const TableRows& rows, const sim::DriveDescription& model);
 
 /// Covariance of the factors of Search::fit_slopes(), base columns first, in their own units.

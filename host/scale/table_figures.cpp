@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// The rows of one direction, for one coordinate each.
+/// A plot of the rows over a coordinate, by direction.
 ScatterPlot over(const TableRows& rows, const Eigen::VectorXd& along, std::string title, Axis axis) {
   ScatterPlot plot;
   plot.title = std::move(title);

@@ -6,8 +6,8 @@
 
 namespace host {
 
-/// x2 - x over travel, force and time by direction, the effects found in it, and the pitch curve. Empty for an empty
-/// study.
+/// Adds x2 - x over travel, force and time by direction, the effects found in it, and the pitch curve. Adds nothing for
+/// an empty study.
 void add_table_figures(const TableStudy& study, Report& report);
 
 }  // namespace host

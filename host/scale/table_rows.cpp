@@ -14,12 +14,12 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// More rows add no information on some dozen factors.
+/// More rows add no information about some dozen factors.
 constexpr std::size_t kMostRows = 2400;
 
 double mm_of(const Record& record) { return record.kind == sim::DriveKind::linear ? 1e3 : 1.0; }
 
-/// The least change of a sensor, mm; 0 where it never changes.
+/// The smallest change of a sensor, mm; 0 if it never changes.
 double step_of(const std::vector<double>& values, double mm) {
   double step = HUGE_VAL;
   for (std::size_t k = 1; k < values.size(); ++k)
@@ -27,14 +27,14 @@ double step_of(const std::vector<double>& values, double mm) {
   return std::isfinite(step) ? step : 0.0;
 }
 
-/// The motor's travel.
+/// The travel of the motor.
 struct MotorTravel {
   std::vector<double> x;   ///< mm
   double deviation = 0.0;  ///< mm RMS
 };
 
-/// Interpolated between the encoder's counts, with a deviation of at most half a count, because a simulated contact
-/// would oscillate at every step of the counts. Without a force in record or model, the counts themselves.
+/// The smoothed travel, at most half a count from the reading, because a simulated contact would oscillate at every
+/// step of the counts. If record and model give no force, the readings themselves.
 MotorTravel travel_between_counts(const Record& record, const sim::DriveDescription& model, double step) {
   MotorTravel travel{record.x, step / std::sqrt(12.0)};
   if (model.find("inertia") != nullptr && model.data.effort_per_volt() > 0.0 &&
@@ -53,8 +53,8 @@ MotorTravel travel_between_counts(const Record& record, const sim::DriveDescript
   return travel;
 }
 
-/// Mean speed and acceleration of each row from what the motor has at its two ends: as short as the row itself, since
-/// the effort beside them is its mean.
+/// Mean speed and acceleration of each row, from the values at its two ends. The interval is the row itself, because
+/// the torque or force of the row is also a mean over it.
 void differentiate(TableRows& rows, const TableRecord& one) {
   const std::vector<double>& x = one.pusher;
   const double period_s = one.record->sample_period_s, row_s = period_s * static_cast<double>(one.stride);
@@ -70,7 +70,7 @@ void differentiate(TableRows& rows, const TableRecord& one) {
   }
 }
 
-/// A reversal counts from the encoder's own steps on.
+/// A reversal counts after two steps of the encoder.
 void note_travel(TableRows& rows, const TableRecord& one, double step) {
   double turned = rows.x(one.first_row), farthest = turned, way = 0.0;
   for (Index k = one.first_row; k < one.first_row + one.rows; ++k) {

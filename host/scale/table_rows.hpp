@@ -11,48 +11,48 @@
 
 namespace host {
 
-/// One record at its own rate, mm and s. `effort` is empty where the record has none.
+/// One record at its own sample rate, mm and s. `effort` is empty if the record has none.
 struct TableRecord {
-  const Record* record = nullptr;  ///< outlives this
-  std::vector<double> x;           ///< mm, of either kind of drive
-  std::vector<double> effort;      ///< of the motor, Nm or N
+  const Record* record = nullptr;  ///< must outlive this object
+  std::vector<double> x;           ///< mm, for both kinds of drive
+  std::vector<double> effort;      ///< torque or force of the motor, Nm or N
   Eigen::Index first_row = 0, rows = 0;
-  std::size_t stride = 1;      ///< samples of which one row is the mean
+  std::size_t stride = 1;      ///< number of samples per row
   std::vector<double> motor;   ///< mm, x interpolated between its counts
   std::vector<double> pusher;  ///< mm: true position of the motor, corrected for the known error of its encoder
 
-  /// Means of a sampled value over each row's samples.
+  /// Writes the means of a sampled value over the samples of each row.
   void put_means(const std::vector<double>& samples, Eigen::VectorXd& of_all_rows) const;
 };
 
-/// All records one after the other; a row is the mean of a few samples.
+/// All records in sequence; a row is the mean of a few samples.
 struct TableRows {
   std::vector<TableRecord> records;
-  Eigen::VectorXd y;       ///< x2 - x, um, about the first row of each record
-  Eigen::VectorXd x;       ///< mm, of the motor's encoder
-  Eigen::VectorXd v, a;    ///< mm/s, mm/s^2, of the pusher
-  Eigen::VectorXd t_s;     ///< the record's own clock
-  Eigen::VectorXd effort;  ///< Nm or N; empty unless all records have it
-  Eigen::VectorXd temp_C;  ///< empty unless all records have it
+  Eigen::VectorXd y;       ///< x2 - x relative to the first row of each record, um
+  Eigen::VectorXd x;       ///< position of the motor's encoder, mm
+  Eigen::VectorXd v, a;    ///< speed and acceleration of the pusher, mm/s, mm/s^2
+  Eigen::VectorXd t_s;     ///< time stamps of the record
+  Eigen::VectorXd effort;  ///< Nm or N; empty if a record has none
+  Eigen::VectorXd temp_C;  ///< empty if a record has none
   Eigen::VectorXd since;   ///< travel since the last reversal, mm
   Eigen::VectorXd way;     ///< direction of the last motion, -1 or 1
   std::vector<RowRun> runs;
-  double step_um = 0.0;   ///< of both sensors together; of the motor's only the uncertainty of its smoothed travel
-  double noise_um = 0.0;  ///< caused by these steps in one row
-  double late_s = 0.0;    ///< by which the table is known to be read after the motor
+  double step_um = 0.0;   ///< step of the table's sensor and uncertainty of the motor's smoothed travel
+  double noise_um = 0.0;  ///< noise of one row due to step_um
+  double late_s = 0.0;    ///< known delay of the table's reading after the motor's
 
   Eigen::Index size() const { return y.size(); }
   /// Recomputes speed and acceleration after a change of the pusher.
   void differentiate_pusher();
   bool has_effort() const { return effort.size() > 0; }
-  /// Means over each row's samples of the values of `of` for every sample of a record.
+  /// Means over the samples of each row of the values that `of` returns for every sample of a record.
   Eigen::VectorXd means(const std::function<std::vector<double>(const TableRecord&)>& of) const;
 };
 
 double rms(const Eigen::VectorXd& values);
 
-/// Rows of the records that have both positions; empty if none has. Throws Failure(bad_input) if the drive's constants
-/// are missing.
+/// Rows of the records with both positions; empty if no record has them. Throws Failure(bad_input) if constants of the
+/// drive are missing.
 TableRows table_rows(const std::vector<const Record*>& records, const sim::DriveDescription& model);
 
 }  // namespace host

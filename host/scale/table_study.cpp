@@ -24,22 +24,22 @@ using Eigen::VectorXd;
 
 VectorXd without(const VectorXd& y, const MatrixXd& columns) { return y - columns * least_norm_solution(columns, y); }
 
-/// Forms of one kind that are fitted in full, of those that promise most.
+/// Number of most promising forms of one kind that are fitted in full.
 constexpr std::size_t kFormsFitted = 3;
-/// More of one kind stand in no machine that one answer helps.
+/// Largest number of effects, and of cyclic errors. No machine has as many.
 constexpr std::size_t kMostEffects = 8, kMostCyclic = 3;
 
-/// Everything chosen so far with one term more or less.
+/// The result of adding or removing one term.
 struct Fitted {
   TableTerm term;
-  double log_evidence = 0.0;  ///< forms averaged out, nats
+  double log_evidence = 0.0;  ///< averaged over the forms, nats
 };
 
 std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind) {
   return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
 }
 
-/// The drive that gap and spring among the terms share; null where there is neither.
+/// The drive that gap and spring have in common; null if the terms include neither.
 const TableDrive* drive_of(const std::vector<TableTerm>& terms) {
   const auto driven = std::ranges::find_if(terms, &TableTerm::is_driven);
   return driven == terms.end() ? nullptr : &driven->drive;
@@ -69,13 +69,13 @@ class Search {
     return with_prior(evidence_.fit_from(before, columns, deviations), terms);
   }
 
-  /// Near a fit: its noise and memory are where this one begins.
+  /// Fits with the noise and memory of a similar fit as start values.
   EvidenceFit fit_beside(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms);
     return with_prior(evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes}), terms);
   }
 
-  /// With what changes of the sizes do.
+  /// Fits the slopes of the terms, which are the effects of changes of the sizes.
   EvidenceFit fit_slopes(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms, true);
     return evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes, .hold_sizes = true});
@@ -122,7 +122,7 @@ class Search {
     return Fitted{best.back(), best_fit.log_evidence + std::min(spread, 0.0)};
   }
 
-  /// Moves what is not linear in the last term to where the evidence is largest.
+  /// Changes the nonlinear parameters of the last term to maximise the evidence.
   void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     TableTerm& term = terms.back();
     if (term.is_driven()) {
@@ -144,7 +144,7 @@ class Search {
     }
   }
 
-  /// Gives all driven terms the most probable drive beside the others.
+  /// Gives all driven terms the drive that is most probable beside the other terms.
   void settle_drive(std::vector<TableTerm>& terms, const NoiseColour& colour, std::vector<TableDrive> starts) const {
     std::vector<TableTerm> others = terms;
     std::erase_if(others, [](const TableTerm& term) { return term.is_driven(); });
@@ -153,8 +153,8 @@ class Search {
       if (term.is_driven()) term.drive = drive;
   }
 
-  /// Once all terms are known the noise is what they leave: a table keeps the error with which it came to rest, so the
-  /// rows of one rest say it once. Without terms that are driven nothing changes.
+  /// Fits the drive again when all terms are known and the noise is their residual. A table keeps the error with which
+  /// it comes to rest, so the rows of one rest are a single observation. Changes nothing if no term is driven.
   void settle_drive_last(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     if (const TableDrive* drive = drive_of(terms)) {
       settle_drive(terms, fit.colour, drives_of_equal_loss(*drive));
@@ -162,7 +162,7 @@ class Search {
     }
   }
 
-  /// From all starts: after a gap or a spring came or went.
+  /// Fits the drive from all starts, after a gap or a spring was added or removed.
   void settle_drive_anew(std::vector<TableTerm>& terms, const NoiseColour& colour) const {
     const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
     if (gap || spring) settle_drive(terms, while_unknown(colour), drive_starts(gap, spring, rows_, deceleration_));
@@ -170,8 +170,8 @@ class Search {
 
   double late_s(const EvidenceFit& fit) const { return -1e-3 * fit.factors(base_.cols() - 1); }
 
-  /// Where the motor is, without the errors of its encoder that are among the terms; and by how much later the table is
-  /// read.
+  /// Corrects the motion of the motor for the encoder errors among the terms, and notes the delay of the table's
+  /// reading.
   void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) {
     for (TableRecord& one : rows_.records) one.pusher = one.motor;
     for (std::size_t k = 0; k < terms.size(); ++k) {
@@ -188,23 +188,23 @@ class Search {
     base_ = table_base(rows_);
   }
 
-  /// The column at which a term's own begin.
+  /// Index of the first column of a term.
   Index first_column(const std::vector<TableTerm>& terms, std::size_t which) const {
     Index first = base_.cols();
     for (std::size_t k = 0; k < which; ++k) first += terms[k].count(rows_);
     return first;
   }
 
-  /// RMS that the last term takes of x2 - x, um; for a wave, the part lost in the means of the rows included. A smaller
-  /// one than the sensors' own steps is not an effect of the machine: two grids beat against each other.
+  /// RMS of x2 - x that the last term explains, um; for a wave, including the part lost in the means of the rows. If it
+  /// is smaller than the steps of the sensors, it is not an effect of the machine but a beat between the two grids.
   double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
     if (terms.back().kind == "encoder_cyclic_error") return fit.factors.tail(2).norm() / std::numbers::sqrt2;
     const MatrixXd own = terms.back().columns(rows_);
     return rms(without(own * fit.factors.tail(own.cols()), base_));
   }
 
-  /// A gap alone may have been taken for a spring alone, or a spring for a gap, before the other terms were known.
-  /// Exchanges the last term if that is more probable; returns how probable it is.
+  /// Before the other terms were known, a gap may have been taken for a spring, or a spring for a gap. Exchanges the
+  /// last term if that is more probable; returns the probability of the exchanged one.
   std::optional<double> exchange_driven(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     std::vector<TableTerm> other = terms;
     other.back().kind = terms.back().kind == "backlash" ? "compliance" : "backlash";
@@ -219,7 +219,7 @@ class Search {
     return logistic(gain);
   }
 
-  /// Of all factors, for the intervals of their sizes.
+  /// Covariance of all factors, for the intervals of the sizes.
   MatrixXd covariance_of(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
     return factor_covariance(fit_slopes(fit, terms), base_.cols(), terms, rows_, usual_);
   }
@@ -231,13 +231,14 @@ class Search {
   }
 
  private:
-  /// More correlated noise than this is what no term explains yet; it says nothing of how sharp a reversal is.
+  /// Bound for the correlation of the noise. More correlation comes from effects that no term explains yet, and does
+  /// not show how sharp a reversal is.
   static NoiseColour while_unknown(const NoiseColour& colour) {
     constexpr double kMostAlike = 0.2;
     return {.drift = std::min(colour.from_row_to_row(), kMostAlike)};
   }
 
-  /// A gap or a spring, beside the other where that is chosen.
+  /// The best fit with a gap or a spring added; if the other one is among the chosen terms, both share one drive.
   std::optional<Fitted> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
                                     const EvidenceFit& before) const {
     std::vector<TableTerm> all = chosen;
@@ -249,7 +250,7 @@ class Search {
     return Fitted{all.back(), fit.log_evidence};
   }
 
-  /// Columns tell how probable a change of the drive is; here is how probable the drive itself is.
+  /// The columns give the probability of a change of the drive; this adds the prior probability of the drive itself.
   EvidenceFit with_prior(EvidenceFit fit, const std::vector<TableTerm>& terms) const {
     if (const TableDrive* drive = drive_of(terms))
       fit.log_evidence -= 0.5 * prior_cost(*drive, shape_ranges(*drive, deceleration_));
@@ -259,7 +260,7 @@ class Search {
   std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms, bool slopes = false) const {
     MatrixXd columns = base_;
     VectorXd deviations(base_.cols());
-    constexpr double kWide = 10.0;  // offsets and delays are known to nothing
+    constexpr double kWide = 10.0;  // offsets and delays have a wide prior
     for (Index c = 0; c < base_.cols(); ++c) deviations(c) = kWide * usual_ / std::max(rms(base_.col(c)), 1e-12);
     for (const TableTerm& term : terms) {
       const MatrixXd own = slopes ? term.slopes(rows_) : term.columns(rows_);
@@ -280,7 +281,7 @@ class Search {
   double deceleration_ = 0.0;
 };
 
-/// What terms with these factors leave of the rows. The base is fitted again.
+/// Residual of the rows for terms with these factors. The base is fitted again.
 VectorXd left_on(const TableRows& rows, const std::vector<TableTerm>& terms, const VectorXd& factors, Index base) {
   VectorXd left = rows.y;
   Index first = base;
@@ -363,7 +364,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     groups.push_back(std::move(group));
     odds.push_back(held);
     fit = search.fit_from(fit, chosen);
-    // What was found first was found beside what was still unknown.
+    // The first effects were found while the others were still unknown, so each is fitted again.
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       std::rotate(chosen.begin(), chosen.begin() + 1, chosen.end());
       std::rotate(groups.begin(), groups.begin() + 1, groups.end());
@@ -379,8 +380,9 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     }
   }
   fit = search.fit_from(fit, chosen);
-  // Whether each is still needed beside the others, and matters; once more when one has gone. What is certain and too
-  // small to be named is set aside: beside it another may seem as small, which takes its part as well.
+  // Removes effects that are no longer needed beside the others or are too small, and repeats this after each removal.
+  // An effect that is certain but too small to be named is set aside, because beside it another effect may also seem
+  // too small that would explain its part as well.
   std::vector<std::vector<TableTerm>> others_of(chosen.size());
   std::vector<EvidenceFit> less_of(chosen.size());
   const auto left_without = [&](std::size_t k) {
@@ -433,7 +435,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   study.before_um = rms(left_on(study.rows, {}, fit.factors, base));
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.rows, model);
-    // What stands in the model by itself is no other name of this one.
+    // A kind that is itself in the model is not an alternative name for this effect.
     for (const std::string& kind : groups[k])
       if (kind == chosen[k].kind || count_of(chosen, kind) == 0) effect.group.push_back(kind);
     effect.probability = odds[k];

@@ -1,4 +1,4 @@
-// Effects between the motor's encoder and a sensor on the table, found by evidence alone, and their sizes.
+// Effects between the motor's encoder and a sensor on the table, selected by Bayesian evidence alone, and their sizes.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ struct TablePoint {
 
 /// One effect that is certain.
 struct TableEffect {
-  std::vector<std::string> group;    ///< one kind, or several that these rows do not separate, most probable first
+  std::vector<std::string> group;    ///< one kind, or kinds that these rows cannot tell apart, most probable first
   std::string place;                 ///< of a cyclic error: "motor", "scale", "scale or motor"
-  double probability = 0.0;          ///< of the group
+  double probability = 0.0;          ///< probability that one of the group is present
   double before = 0.0, after = 0.0;  ///< RMS without it and with all effects, um
-  bool worth_naming = false;         ///< by the losses of infer/posterior.hpp
+  bool worth_naming = false;         ///< by the limits in infer/posterior.hpp
   std::vector<TableSize> sizes;
-  std::vector<TablePoint> curve;  ///< of a pitch error
-  sim::EffectEntry entry;         ///< as in a model; without parameters if a model cannot contain it
+  std::vector<TablePoint> curve;  ///< curve of a pitch error
+  sim::EffectEntry entry;         ///< entry for a model; without parameters if a model cannot contain it
   std::string words;
 
   const std::string& kind() const { return group.front(); }
@@ -39,12 +39,12 @@ struct TableEffect {
 
 struct TableStudy {
   TableRows rows;
-  double before_um = 0.0, left_um = 0.0;  ///< RMS: offsets and delay alone; with all effects
+  double before_um = 0.0, left_um = 0.0;  ///< RMS with offsets and delay only; with all effects
   double noise_um = 0.0;
-  double delay_s = 0.0;                                     ///< by which the table's sensor is read after the motor's
-  std::vector<TableEffect> effects;                         ///< in the order in which they were found
+  double delay_s = 0.0;                                     ///< delay of the table's reading after the motor's
+  std::vector<TableEffect> effects;                         ///< in the order of discovery
   std::vector<std::pair<std::string, double>> absent_odds;  ///< probability of each kind that was not found
-  Eigen::VectorXd left;                                     ///< of every row, um
+  Eigen::VectorXd left;                                     ///< residual of every row, um
 
   bool empty() const { return rows.size() == 0; }
   const TableEffect* find(std::string_view kind) const;
@@ -52,9 +52,9 @@ struct TableStudy {
   std::optional<double> probability(std::string_view kind) const;
 };
 
-/// Kinds that the model already has are unchanged. Empty if no record has a second position, or the axis does not move
-/// in both directions. Evidence needs no held-back records, so every command uses the same rows. Throws
-/// Failure(bad_input) if the drive's constants are missing.
+/// Kinds that the model already has are not searched. Empty if no record has a second position, or if the axis does not
+/// move in both directions. Bayesian evidence needs no held-back records, so every command uses the same rows. Throws
+/// Failure(bad_input) if constants of the drive are missing.
 TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& records);
 
 /// "backlash 12.3 um (95 %: 12.0 to 12.6); …": sentences, with the residual.

@@ -41,15 +41,16 @@ MatrixXd growth(const TableRows& rows, double time_s) {
   return columns;
 }
 
-/// With knots by a constant factor, linear over the logarithm.
+/// Hats with knots in equal ratios, linear over the logarithm.
 MatrixXd log_hats(const VectorXd& at, double low, double high, int count) {
   return hats(at.cwiseMax(low).array().log(), even_knots(std::log(low), std::log(high), count));
 }
 
-/// A gap beside a spring leaves the shape to the spring.
+/// If there is a spring, the shape is part of the spring's term and not of the gap's.
 bool has_shape(const TableTerm& term) { return term.kind == "compliance" || !(term.drive.lag > 0.0); }
 
-/// What a change of the drive's numbers by 1 does, um; the drive itself and all changes are simulated side by side.
+/// Change of x2 - x for a change of the drive's parameters by 1, um. The drive and all changes are simulated in
+/// parallel.
 struct DrivenSlopes {
   DrivenRows at;
   MatrixXd slopes;
@@ -66,7 +67,7 @@ DrivenSlopes slopes_of(const TableDrive& drive, const std::vector<std::pair<Driv
   return found;
 }
 
-/// Numbers of the shape, with the steps of their differences.
+/// Parameters of the shape with their difference steps.
 std::vector<std::pair<DriveNumber, double>> shape_steps(const TableTerm& term) {
   std::vector<std::pair<DriveNumber, double>> steps;
   if (has_shape(term))
@@ -132,7 +133,7 @@ VectorXd TableTerm::deviations(const MatrixXd& columns, double usual) const {
     Index next = 1;
     for (const DriveRange& range : shape_ranges(drive, deceleration)) deviations(next++) = range.deviation;
   }
-  // Curves are smooth: a wave's amplitude falls with its order.
+  // Curves are smooth, so the amplitude of a wave decreases with its order.
   if (kind == "pitch_error")
     for (Index c = 1; c < columns.cols(); ++c) deviations(c) /= static_cast<double>((c + 1) / 2);
   return deviations;
@@ -151,8 +152,8 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
     for (const double part : {0.1, 0.3, 1.0, 10.0}) forms.push_back({name, {part * longest_s}, {}});
     if (rows.temp_C.size() > 0 && rows.temp_C.maxCoeff() > rows.temp_C.minCoeff()) forms.push_back({name, {0.0}, {}});
   } else if (travel > 0.0) {
-    // From where the pitch curve ends, some waves over the travel, down to where as many waves are still resolved: the
-    // rows that resolve a wave are those of slow motion, however few.
+    // From the shortest wave of the pitch curve to the shortest period of which the rows resolve kWaves periods. A few
+    // rows of slow motion suffice for that.
     constexpr double kRowsAPeriod = 3.0, kMostPeriods = 4000.0, kWaves = (kPitchOrders + 1) / kPitchPeriod;
     std::vector<double> steps;
     for (Index k = 1; k < rows.size(); ++k)
@@ -172,7 +173,8 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
 }
 
 std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration) {
-  // Gaps of good ball screws up to worn ones, within what is there; springs from 10 to 400 Hz with the motor held.
+  // Gaps from good to worn ball screws, but not larger than the measured difference; springs from 10 to 400 Hz with the
+  // motor held.
   constexpr double kLeastGap_mm = 0.001, kMostGap_mm = 0.6, kLeastLag = 1.6e-7, kMostLag = 2.6e-4, kNoSlide = 1e5;
   const double whole = 1e-3 * (rows.y.maxCoeff() - rows.y.minCoeff());
   const double usual = deceleration > 0.0 ? deceleration : 500.0;

@@ -26,7 +26,7 @@ TEST(Chance, NoChangeIsNoImprovement) {
 }
 
 TEST(Chance, NoiseThatSumsToNothingIsEvenOdds) {
-  // Every gain occurs with both signs, so that the sum is zero and the bootstrap's distribution symmetric.
+  // Every gain occurs with both signs, so that the sum is zero and the bootstrap distribution is symmetric.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> gain(0.1, 1.0);
   std::vector<double> before, after;
@@ -38,13 +38,14 @@ TEST(Chance, NoiseThatSumsToNothingIsEvenOdds) {
         after.push_back(5.0);
       }
     }
-  // All windows are common, so that squares count as they are. 2000 draws: a standard deviation of 0.011; four of them.
+  // All windows have full weight. 2000 draws give a standard deviation of 0.011; the tolerance is four of them.
   constexpr double kAllCommon = 1e9;
   EXPECT_NEAR(host::confidence_of_improvement(errors(before), errors(after), 10, kAllCommon), 0.5, 0.045);
 }
 
 TEST(Chance, OneLuckyBlockIsNotConfidence) {
-  // A tenth worse everywhere but in one block of 400, which outweighs it: it is missing in 1/e of the resampled sets.
+  // A tenth worse in all blocks except one in 400, which outweighs the others. This block is absent in 1/e of the
+  // resampled sets.
   std::vector<double> before(4000, 1.0), after(4000, 1.01);
   for (std::size_t k = 0; k < 10; ++k) before[k] = 1000.0;
   const double confidence = host::confidence_of_improvement(errors(before), errors(after));

@@ -1,4 +1,4 @@
-// Comparison by torque or force, on motions whose effort is known in closed form.
+// Comparison by torque or force, on motions whose torque or force is known in closed form.
 #include "host/compare/effort_prediction.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ sim::DriveDescription model_with(double delay_s) {
   return model;
 }
 
-/// Two superposed strokes; the axis stands before `start_s`.
+/// Two superposed strokes; the axis rests before `start_s`.
 struct Strokes {
   double start_s;
   static constexpr double kSlow = 2.0 * std::numbers::pi * 0.5, kFast = 2.0 * std::numbers::pi * 4.0;
@@ -45,7 +45,7 @@ struct Strokes {
   }
 };
 
-/// The command for these strokes: earlier by the dead time and by the half period of the hold.
+/// The command for these strokes, earlier by the dead time and by half a period of the hold.
 host::Record record_of(const Strokes& strokes) {
   host::Record record;
   record.path = "strokes.csv";
@@ -71,7 +71,7 @@ TEST(EffortPrediction, KnowsTheForceOfAMotionAndWhenItsCommandWasSent) {
   const double with = host::error_of(sim::Drive(right), set).combined;
   const double without = host::error_of(sim::Drive(model_with(0.0)), set).combined;
   EXPECT_LT(with, 0.2 * without);
-  // The residual of the right model is where the force jumps at a reversal; half of the windows do not contain it.
+  // The residual of the correct model is at reversals, where the force jumps. Half of the windows contain no reversal.
   std::vector<double> squares;
   for (const host::WindowScore& score : host::error_of(sim::Drive(right), set).windows) squares.push_back(score.effort);
   std::ranges::nth_element(squares, squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2));

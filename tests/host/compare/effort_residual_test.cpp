@@ -1,4 +1,4 @@
-// The effort that a model leaves unexplained, on a record made by hand from a force balance.
+// Torque that a model leaves unexplained, on a record made from a force balance.
 #include "host/compare/effort_residual.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,8 @@
 
 namespace {
 
-// For motions slow against its resonance, a load moves with its motor: both models leave the same residual.
+// For motions that are slow compared with its resonance, a load moves with its motor, so both models have the same
+// residual.
 TEST(ResidualSamples, ALoadOnASpringOrBehindAGapMovesWithItsMotor) {
   const host::Record record = HandMade::record();
   const sim::DriveDescription rigid = HandMade::model();

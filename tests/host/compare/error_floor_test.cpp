@@ -1,4 +1,4 @@
-// The error that the best possible model would leave.
+// The error of the best possible model.
 #include "host/compare/error_floor.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(ErrorFloor, OfAModelThatRunsAwayIsANumber) {
   for (const double value : floor.x) EXPECT_TRUE(std::isfinite(value) && value > 0.0) << value;
 }
 
-/// The motor of the made records, as it is.
+/// The motor of the made records, with all of its effects.
 sim::DriveDescription complete_motor() {
   sim::DriveDescription model = motor();
   model.find("inertia")->parameters["J"] = kInertia;
@@ -34,14 +34,14 @@ sim::DriveDescription complete_motor() {
   return model;
 }
 
-// Noise of the current moves a light rotor far within a window; if it is ignored, a complete model seems wrong by a
-// factor.
+// Noise of the current moves a light rotor far within a window. If it were ignored, a complete model would seem wrong
+// by a factor.
 TEST(ErrorFloor, HoldsTheNoiseOfAMeasuredCurrent) {
   const auto nothing = [](const Point&) { return 0.0; };
   const host::Record record = record_of(slow_turning, nothing, 0.0, 20.0, 3);
   const sim::DriveDescription model = complete_motor();
   const host::RecordSet set = host::compare_on({&record}, model);
-  // 0.01 A, and steps of 0.002 A.
+  // Noise of 0.01 A, and steps of 0.002 A.
   EXPECT_NEAR(set.records.front().prepared.effort_noise, 0.01 * kPerAmpere, 0.1 * 0.01 * kPerAmpere);
   const double error = host::error_of(sim::Drive(model), set).combined;
   EXPECT_GT(error, 0.6);

@@ -26,7 +26,8 @@ TEST(Regimes, FollowTheMotion) {
   EXPECT_EQ(regimes[row_at(1.05)], Regime::saturated_command);
   EXPECT_EQ(regimes[row_at(1.75)], Regime::braking);
   EXPECT_EQ(regimes[row_at(2.25)], Regime::standstill);
-  // 100 rad/s^2 from rest: 0.5 * 160 mm/s^2 * t^2 = 50 um after 25 ms; 20 ms after the turn it is 32 um, 35 ms 98 um.
+  // 100 rad/s^2 from rest: 0.5 * 160 mm/s^2 * t^2 = 50 um after 25 ms. It is 32 um 20 ms after the reversal and 98 um
+  // after 35 ms.
   EXPECT_EQ(regimes[row_at(2.52)], Regime::reversal);
   EXPECT_NE(regimes[row_at(2.535)], Regime::reversal);
   EXPECT_EQ(regimes[row_at(2.75)], Regime::acceleration);
@@ -69,7 +70,7 @@ TEST_F(Regions, NameTheDirectionWhoseFrictionIsWrong) {
 
 TEST_F(Regions, NameTheTimeOfAPassingEvent) {
   host::Record record = HandMade::record();
-  for (std::size_t k = row_at(6.0); k < row_at(6.4); ++k) record.u_V[k] += 1.0;  // effort that moved nothing
+  for (std::size_t k = row_at(6.0); k < row_at(6.4); ++k) record.u_V[k] += 1.0;  // a command without motion
   const sim::DriveDescription model = HandMade::model();
   const auto regions = host::error_regions(model, host::compare_on({&record}, model));
   const host::ErrorRegion* worst = host::worst_region(regions);

@@ -6,7 +6,7 @@
 
 namespace {
 
-// A run that restarts on the way, or that sees the measured position, would not drift.
+// A run that restarts on the way, or that uses the measured position, would not drift.
 TEST(FreeRun, AddsUpWhatAModelIsWrongBy) {
   const host::Record record = HandMade::record(3.0);
   const sim::DriveDescription truth = HandMade::model();

@@ -36,7 +36,7 @@ TEST(Prediction, OfAWindowIsTheSameInAnyCompany) {
 }
 
 /// The model contains the errors of encoder and converter, so neither may change the prediction error, with one mass or
-/// with two.
+/// two.
 TEST(Prediction, IsAsGoodBehindAKnownErrorOfEncoderOrConverter) {
   constexpr double kWave_mm = 0.03, kPeriod_mm = 4.0, kOffset_V = 0.4;
   constexpr double kNear = 0.1;  // noise floors

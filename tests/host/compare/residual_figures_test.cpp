@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod_mm = 10.0;
 
-/// Motion to and fro over 200 mm. The friction varies by 35 % of 2 Nm along each 10 mm.
+/// Motion back and forth over 200 mm. The friction varies by 35 % of 2 Nm within each 10 mm.
 ResidualEffort varying_friction() {
   ResidualEffort samples;
   for (int k = 0; k < 8000; ++k) {
@@ -31,7 +31,7 @@ double largest(const ScatterSeries& curve) {
   return most;
 }
 
-// Catches a mean over both directions, in which friction that varies along the travel is a flat line at zero.
+// Catches a mean over both directions, for which friction that varies along the travel is a flat line at zero.
 TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
   const ResidualEffort samples = varying_friction();
   ResidualCoordinate over = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
@@ -43,7 +43,7 @@ TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
     EXPECT_NEAR(curves[0].y[k], -curves[1].y[k], 0.1);
 }
 
-// Catches bins along the travel whose means beat with a known ripple. Eight bins for each period show its full size.
+// Catches bins along the travel whose means beat with a known ripple. Eight bins per period show its full size.
 TEST(DirectionCurves, AKnownRippleKeepsItsSizeAlongTheTravel) {
   const ResidualEffort samples = varying_friction();
   const auto along = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
@@ -61,7 +61,8 @@ TEST(ResidualCoordinate, TravelIsInMillimetresForBothKindsOfDrives) {
   EXPECT_EQ(coordinate_of("position", sim::DriveKind::linear).axis.unit, "mm");
 }
 
-// A map shows the same place in different cells for different speeds, so friction is not averaged over both directions.
+// A map shows the same position at different speeds in different cells, so friction is not averaged over both
+// directions.
 TEST(ResidualMaps, TellPositionAndSpeedApart) {
   const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
   Report report("test");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFrequency_Hz = 12.5, kAmplitude_Nm = 0.3;
 
-/// 20 s of a sine, of which the axis stands for a fifth where `rests`.
+/// 20 s of a sine; if `rests`, the axis rests for a fifth of the time.
 ResidualEffort humming(bool rests) {
   ResidualEffort samples;
   for (std::size_t slot = 0; slot < 4000; ++slot) {
@@ -31,7 +31,7 @@ double power_of(const ScatterSeries& spectrum) {
   return sum * (spectrum.x[1] - spectrum.x[0]);
 }
 
-// Parseval: catches a density of one side only, a forgotten window, rests that dilute it.
+// Parseval's theorem. Catches a two-sided density, a missing window correction, and rests that reduce the density.
 TEST(ResidualSpectrum, HoldsThePowerOfASineAtItsFrequency) {
   for (const bool rests : {false, true}) {
     const ScatterSeries spectrum = spectrum_of_residual(humming(rests));

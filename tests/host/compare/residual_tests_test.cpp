@@ -1,4 +1,4 @@
-// The tests must name the coordinate on which a made residual depends, and none for an independent residual.
+// The tests must name the coordinate on which a made residual depends, and none if the residual is independent.
 #include "host/compare/residual_tests.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 
 namespace {
 
-/// A record whose motor gave `extra` (Nm, of time and speed) beyond what its motion needs.
+/// A record whose motor gave `extra` (Nm; a function of time, travel and speed) beyond the torque that its motion
+/// needs.
 host::Record record_with(const std::function<double(double t_s, double x, double w)>& extra) {
   host::Record record = HandMade::record(20.0);
   const double per_volt = HandMade::model().data.effort_per_volt();
@@ -32,7 +33,7 @@ host::ResidualTests tests_of(const host::Record& record) {
 }
 
 TEST(ResidualTests, ATorqueOfAFixedFrequencyIsNamedByItsFrequency) {
-  constexpr double kHum_Hz = 17.0;  // within what the smoother resolves
+  constexpr double kHum_Hz = 17.0;  // within the resolution of the smoother
   const auto tests = tests_of(
       record_with([](double t_s, double, double) { return 0.2 * std::sin(2.0 * std::numbers::pi * kHum_Hz * t_s); }));
   ASSERT_FALSE(tests.dependences.empty());
@@ -57,7 +58,7 @@ TEST(ResidualTests, AHardSpotIsNamedByItsPositionAlthoughItTurnsWithTheDirection
   EXPECT_GT(share_on(tests, "position"), 0.1);
 }
 
-/// Catches a test that includes samples at rest, where nothing decays.
+/// Catches a test that includes samples at rest, in which nothing decays.
 TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
   constexpr double kFades_mm = 0.03;
   double turned = 0.0, before = 0.0, last_x = 0.0;
@@ -67,9 +68,9 @@ TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
     last_x = x;
     return -0.5 * std::copysign(std::exp(-std::abs(x - turned) / kFades_mm), w);
   }));
-  EXPECT_GT(fading.near_reversals, 0.65);  // 0.54 where the axis stands counted too
+  EXPECT_GT(fading.near_reversals, 0.65);  // 0.54 if samples at rest counted too
   const auto at_speed = tests_of(record_with([](double, double, double w) { return 0.004 * w * std::abs(w) / 10.0; }));
-  EXPECT_LT(at_speed.near_reversals, 0.35);  // a quarter, were it spread evenly
+  EXPECT_LT(at_speed.near_reversals, 0.35);  // 0.25 if it were spread evenly
 }
 
 TEST(ResidualTests, TheAutocorrelationBeginsAtOneAndHasABound) {
@@ -78,7 +79,7 @@ TEST(ResidualTests, TheAutocorrelationBeginsAtOneAndHasABound) {
   EXPECT_NEAR(tests.with_itself.value.front(), 1.0, 1e-9);
   EXPECT_GT(tests.with_itself.bound, 0.0);
   EXPECT_LT(tests.with_itself.bound, 0.2);
-  // A sine of 30 rad/s has turned over after 0.105 s: beyond a window of 0.1 s, so that restarts do not hide it.
+  // A sine of 30 rad/s reverses after 0.105 s, which is longer than a window of 0.1 s, so that restarts do not hide it.
   double least = 1.0;
   for (const double value : tests.with_itself.value) least = std::min(least, value);
   EXPECT_LT(least, -tests.with_itself.bound);
@@ -94,7 +95,7 @@ TEST(ResidualTests, AFrictionThatDriftsIsSlow) {
   EXPECT_LT(tests.constant, 0.2);
 }
 
-/// Reading of the speed channel, from the true speed, its acceleration and the travel.
+/// Reading of the speed channel, as a function of the true speed, its acceleration and the travel.
 using Reading = std::function<double(double w, double acceleration, double x_mm)>;
 
 host::ResidualTests tests_of_reading(const Reading& reading) {

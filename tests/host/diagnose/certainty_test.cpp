@@ -1,4 +1,4 @@
-// A verdict follows from its probabilities.
+// The verdict follows from the probabilities of its effects.
 #include "host/diagnose/certainty.hpp"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ TEST(Certainty, AnEffectHoldsWhatEveryCandidateWithItHolds) {
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("cogging"));
 }
 
-/// Was "missing: torque_ripple" with 6 % beside "something else" with 67 %.
+/// An earlier version said "missing: torque_ripple" with 6 %, although "something else" had 67 %.
 TEST(Certainty, WhatIsImprobableIsNotNamed) {
   const Diagnosis diagnosis =
       claimed({"torque_ripple"}, {candidate({"torque_ripple"}, 0.06), candidate({"cogging"}, 0.2)});
@@ -63,7 +63,7 @@ TEST(Certainty, WhatIsDeniedByItselfIsNoRival) {
   EXPECT_EQ(of_two.verdict.status, Status::ambiguous) << "one name alone needs 95 %";
 }
 
-/// Most records cannot tell an offset of the command from a weight, but they can tell the encoder's error from both.
+/// Most records cannot tell an offset of the command from a weight, but they can tell an encoder error from both.
 TEST(Certainty, WhatIsCertainStandsBesideAGroup) {
   const Diagnosis diagnosis =
       claimed({"dac_offset", "encoder_cyclic_error"}, {candidate({"dac_offset", "encoder_cyclic_error"}, 0.49),

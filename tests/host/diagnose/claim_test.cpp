@@ -1,4 +1,4 @@
-// Requirements for a claim, on errors written by hand.
+// Criteria for a claim, on errors written by hand.
 #include "host/diagnose/claim.hpp"
 
 #include <gmock/gmock.h>
@@ -37,12 +37,12 @@ host::Diagnosis diagnosis(double before_train, double before_validate) {
 
 TEST(Claim, WhatTakesNearlyAllOfTheErrorOnBothSetsStands) {
   EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 1.1), diagnosis(20.0, 12.0)), Reservation::none);
-  // An impact that comes a moment late leaves 3 floors of 20 on training: 2 % of the square.
+  // A slightly late impact leaves 3 of 20 noise floors on training: 2 % of the squared error.
   EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 3.0), diagnosis(20.0, 12.0)), Reservation::none);
 }
 
 TEST(Claim, ACompleteModelLeavesNothingToExplain) {
-  // A gain by chance on validation, where a few windows are bad; in training there was no error to explain.
+  // A gain by chance on validation data, in which a few windows are bad. The training data had no error to explain.
   EXPECT_EQ(host::reservation_about(candidate(1.24, 0.97, 0.76), diagnosis(0.83, 1.24)), Reservation::no_gain);
   EXPECT_EQ(host::reservation_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Reservation::no_gain);
 }
@@ -83,7 +83,8 @@ host::SetError errors(std::size_t windows, double square) {
 }
 
 TEST(Claim, LuckIsRuledOutByWindowsAndBroughtBackByCandidates) {
-  // Of five blocks that all improve, one set of signs in 32 does as well; of twenty, one in a million.
+  // If all of five blocks improve, one combination of signs in 32 gives as large a gain; of twenty blocks, one in a
+  // million.
   EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 1, 2), 1.0 / 32.0, 0.006);
   EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 20, 2), 20.0 / 32.0, 0.12);
   EXPECT_LT(host::probability_of_luck(errors(40, 4.0), errors(40, 1.0), 20, 2), 0.01);
@@ -125,14 +126,14 @@ TEST(Probability, EqualsShareItAndWhatIsLeftBelongsToSomethingElse) {
 TEST(Probability, ASmallErrorIsProbablyNothing) {
   host::Diagnosis complete = diagnosis(0.85, 0.95);
   host::assign_probabilities(complete);
-  EXPECT_GT(complete.verdict.probability_nothing, 0.7);  // with hardly a window
+  EXPECT_GT(complete.verdict.probability_nothing, 0.7);  // with hardly any windows
   complete.candidates = {candidate(0.95, 0.90, 0.84)};
   host::assign_probabilities(complete);
   EXPECT_GT(complete.verdict.probability_nothing, 0.7);
   EXPECT_NEAR(sum_of_probabilities(complete), 1.0, 1e-12);
 }
 
-/// If the records do not suffice, or the residual is not noise, the verdict must not be an all-clear.
+/// If the records do not suffice, or the residual is not noise, the verdict must not call the model complete.
 TEST(Probability, AnObjectionToTheAllClearIsOneToNothing) {
   host::Diagnosis complete = diagnosis(0.85, 0.95);
   host::assign_probabilities(complete);

@@ -62,7 +62,7 @@ TEST(Diagnosis, ATachometerWithoutADataSheetHasTheNoiseThatItsRecordShows) {
   EXPECT_LT(diagnosis.given_validate, 2.0);
 }
 
-/// A drive with dead time, and with a dead zone of so many volts: it answers a command that is larger by as much.
+/// A drive with a dead time and a dead zone of `width_V`: it follows a command that is larger by this width.
 DriveCase late_with_dead_zone(double width_V) {
   DriveCase late("single/case-06");
   for (std::vector<host::Record>* records : {&late.train, &late.validate})
@@ -82,7 +82,7 @@ TEST(Diagnosis, WhatTheEffortLeavesTheMotionTells) {
   EXPECT_LT(diagnosis.after_validate, 1.1);
 }
 
-/// Effects that are often confused with the first of two effects are tried in its place, too, beside the second.
+/// Effects that are often confused with the first of two effects are also tried in its place, beside the second.
 TEST(Diagnosis, BothEffectsOfAPairHaveRivals) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase late = late_with_dead_zone(0.12);
@@ -97,7 +97,7 @@ TEST(Diagnosis, BothEffectsOfAPairHaveRivals) {
 
 TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // The training motion gives a friction that is far off for the validation motion.
+  // The friction from the training motion is wrong for the validation motion.
   const host::SimulatedNull null = host::simulated_null(3'000'054);
   const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
   const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
@@ -107,7 +107,8 @@ TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
               testing::ContainsRegex("training data do not determine [a-z, ]*(viscous|stribeck)"));
 }
 
-/// The base ends in a local minimum which only a nonexistent offset would leave; a candidate built on it diverges.
+/// The base ends in a local minimum, which a fit leaves only with a nonexistent offset. A candidate based on it
+/// diverges.
 TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(55);
@@ -117,7 +118,7 @@ TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   EXPECT_EQ(diagnosis.verdict.status, host::Status::parameters) << diagnosis.verdict.explanation;
 }
 
-/// A diverged breakaway level distorted the base so far that half of the error was called an effect. Without it the
+/// A diverged breakaway level distorted the base so much that half of the error was called an effect. Without it, the
 /// training data do not determine the base, and the verdict says so.
 TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
@@ -128,7 +129,7 @@ TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty()) << diagnosis.verdict.explanation;
 }
 
-/// Static friction diverged to the motor's full torque, and no candidate led back.
+/// Static friction diverged to the full torque of the motor, and no candidate recovered from that.
 TEST(Diagnosis, StaticFrictionThatRanAwayIsFittedAgainFromWhatWasGiven) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(1'000'040);
@@ -138,7 +139,7 @@ TEST(Diagnosis, StaticFrictionThatRanAwayIsFittedAgainFromWhatWasGiven) {
   EXPECT_LT(diagnosis.base.find("stribeck")->at("static_positive"), 6.0) << "4.4 Nm in the machine";
 }
 
-/// Half of the residual depends on the acceleration there, due to the smoother; no effect is missing.
+/// Half of the residual depends on the acceleration because of the smoother; no effect is missing.
 TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(3);
@@ -179,8 +180,8 @@ TEST(Diagnosis, ARippleOverTheTravelIsSeenThoughBinsOverAllOfItAreTooWide) {
   EXPECT_NEAR(period_mm, 1.25, 0.0125) << "truth.json; of ten periods, a tenth of one";
 }
 
-/// A hard spot, which the catalogue does not know. The axis moved as it did under the recorded command; had the spot
-/// been there, the same motion would have taken the spot's effort more.
+/// A hard spot, which the catalogue does not contain. The motion is the one under the recorded command; with the spot,
+/// this motion would have needed more torque there.
 void add_hard_spot(host::Record& record, const sim::DataSheet& data, double place_mm, double width_mm,
                    double effort_Nm) {
   constexpr double kSliding_rad_s = 0.5;

@@ -1,4 +1,4 @@
-// A shipped drive case: the engineer's model, the measurements, and the hidden effects.
+// A published drive case: the engineer's model, the measurements, and the hidden effects.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct DriveCase {
   sim::DriveDescription model;
   std::vector<host::Record> train, validate;
   std::vector<std::string> effects;              ///< hidden effects
-  std::vector<std::vector<std::string>> groups;  ///< effects that such data may be unable to tell apart
+  std::vector<std::vector<std::string>> groups;  ///< effects that these data may be unable to tell apart
 
   /// `name` is "single/case-06".
   explicit DriveCase(const std::string& name) {
@@ -41,7 +41,7 @@ struct DriveCase {
     groups = truth.at("groups").get<std::vector<std::vector<std::string>>>();
   }
 
-  /// Refers to the records accepted by the gate, which exist as long as this case.
+  /// Refers to the records that the gate accepted, which exist as long as this case.
   host::Diagnosis diagnose() {
     measured.emplace(host::MeasurementGate(model).admit(train, validate));
     return host::diagnose(model, *measured);

@@ -1,5 +1,5 @@
-// What is missing from the published model of a real drive (EMPS, Janot, Gautier, Brunot 2019). The records are not
-// part of the project; the test skips where they are absent.
+// Effects that are missing in the published model of a real drive (EMPS, Janot, Gautier, Brunot 2019). The records are
+// not part of the project; the test is skipped if they are absent.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,7 +48,8 @@ TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndTheTwoThatHideEachOther) {
   EXPECT_TRUE(first.rough);
   EXPECT_EQ(first.measure, host::Measure::effort);
   EXPECT_EQ(first.verdict.status, host::Status::missing);
-  // Recomputed from the published data: 166.71 and 240.42 N s/m, so -36.9 on 203.6; and the offset of -3.16 N vanishes.
+  // From the published data: 166.71 and 240.42 N s/m, a difference of -36.9 from the mean 203.6; the offset of -3.16 N
+  // vanishes.
   EXPECT_THAT(first.verdict.effects, UnorderedElementsAre("viscous_asymmetry", "nonlinear_viscous", "input_delay"));
   const sim::EffectEntry* asymmetry = first.best.find("viscous_asymmetry");
   ASSERT_NE(asymmetry, nullptr);
@@ -56,12 +57,12 @@ TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndTheTwoThatHideEachOther) {
   const sim::EffectEntry* coulomb = first.best.find("coulomb");
   EXPECT_LT(std::abs(0.5 * (coulomb->at("positive") + coulomb->at("negative"))), 0.5);
   for (const char* id : {"positive", "negative"}) EXPECT_NEAR(std::abs(coulomb->at(id)), 20.4, 3.0);
-  // Half a sample of the converter's hold counts apart from it: regressions of the published data give 0.86 ms with it.
+  // Half a sample of the converter's hold is not included; regressions of the published data give 0.86 ms with it.
   EXPECT_NEAR(first.best.find("input_delay")->at("delay"), 0.36e-3, 0.15e-3);
   EXPECT_EQ(improvement.ladder.size(), 4u) << "base and these three: nothing more";
   ASSERT_TRUE(first.screen != nullptr && first.screen->repeatable.has_value());
   EXPECT_NEAR(first.screen->repeatable->share, 0.64, 0.1);
-  // What a regression with these three reaches on the published data: 2.138 % and 2.798 %.
+  // The errors of a regression with these three effects on the published data: 2.138 % and 2.798 %.
   EXPECT_LE(host::relative_error(improvement.model, train), 0.0215);
   EXPECT_LE(host::relative_error(improvement.model, validate), 0.0285);
 }

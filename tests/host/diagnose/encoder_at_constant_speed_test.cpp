@@ -28,7 +28,7 @@ sim::DriveDescription carriage() {
   return drive;
 }
 
-/// The carriage goes at the speed that 5 V command; the encoder adds its error, counts and a little noise.
+/// The carriage moves at the speed for 5 V. The encoder adds its error, counts and a little noise.
 host::Record run(double from_m, double duration_s, bool with_tachometer, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> jitter(0.0, 1.0);
@@ -63,7 +63,7 @@ TEST_F(EncoderAtConstantSpeed, IsAmongTheNamesByPositionAlone) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::DiagnosisVerdict verdict = host::diagnose(drive, measured(false)).verdict;
   EXPECT_THAT(verdict.effects, testing::Contains("encoder_cyclic_error"));
-  for (const std::string& kind : verdict.effects)  // one speed: a torque of that period looks the same
+  for (const std::string& kind : verdict.effects)  // at a single speed, a torque of that period looks the same
     EXPECT_THAT(kind, testing::AnyOf("encoder_cyclic_error", "cogging", "torque_ripple"));
 }
 

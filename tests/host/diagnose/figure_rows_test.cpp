@@ -1,4 +1,4 @@
-// Which of two models predicts held-back records worse.
+// Finds which of two models predicts held-back records worse.
 #include "host/diagnose/figure_rows.hpp"
 
 #include <gtest/gtest.h>

@@ -38,7 +38,8 @@ TEST_P(HiddenEffect, IsFoundAndNothingElse) {
   EXPECT_LT(diagnosis.after_validate, diagnosis.before_validate);
 }
 
-/// A found effect has the size of the hidden one, in the unit of the machine, over the coordinate in which it shows.
+/// A found effect must have the size of the hidden one, in the unit of the machine, over the coordinate in which it
+/// shows.
 TEST(FoundEffect, HasTheSizeThatWasHidden) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kHidden_Nm = 0.156, kPeriod_mm = 1.25;  // cog1 and cog1_per in its truth.json

@@ -1,4 +1,4 @@
-// The report of an improvement: figures, file and the next command, instead of the missing effect.
+// The report of an improvement: figures, file and the next command, instead of a missing effect.
 #include "host/diagnose/improvement_report.hpp"
 
 #include <gmock/gmock.h>

@@ -23,7 +23,7 @@ TEST(FitBudget, EndsAFitThatHasUsedItUpAndNoOther) {
   ASSERT_FALSE(free.cut_short);
   ASSERT_GT(free.iterations, 2) << "something to cut";
 
-  // When the budget is checked, one evaluation of the errors and one of the slopes are under way.
+  // At the check of the budget, one evaluation of the errors and one of the Jacobian are in progress.
   const double slopes = static_cast<double>(host::ParameterVector(model, host::Freedom::everything).size()) + 1.0;
   const host::FitResult cut = host::fit_model(model, set, {.most_steps = 2.0 * pass});
   EXPECT_TRUE(cut.cut_short);
@@ -41,7 +41,7 @@ TEST(FitBudget, CountsTheStepsInsideASample) {
   const host::RecordSet set = host::compare_on({&record}, model);
   const double samples = static_cast<double>(set.used_windows() * set.records.front().prepared.windows.front().length);
   EXPECT_EQ(host::steps_of(sim::Drive(model), set), samples);
-  // 0.27 radian a step: 2 pi 200 Hz 1 ms / 0.27 = 4.7.
+  // 0.27 radian per step: 2 pi 200 Hz 1 ms / 0.27 = 4.7.
   model.effects.push_back(
       {"compliance", {{"resonance", 200.0}, {"damping_ratio", 0.05}, {"load_fraction", 0.3}}, {}, {}});
   EXPECT_EQ(host::steps_of(sim::Drive(model), set), 5.0 * samples);
@@ -65,7 +65,7 @@ TEST(Fit, LeavesWhatIsHeldAndMovesTheRest) {
   EXPECT_NEAR(conflicts.front().wanted, held / 1.3, 0.03 * held);
 }
 
-// Catches a prior that is ignored, or that has the weight of every sample.
+// Catches a prior that is ignored, or that gets the weight of all samples.
 TEST(Fit, WeighsABeliefAgainstTheRecord) {
   const host::Record record = HandMade::record(3.0);
   sim::DriveDescription model = heavier(HandMade::model());

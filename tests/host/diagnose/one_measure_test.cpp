@@ -1,4 +1,4 @@
-// One model and one record have one set of figures, in every command.
+// The error of one model on one record is the same in every command.
 #include <gtest/gtest.h>
 
 #include "host/compare/comparison_figures.hpp"
@@ -13,7 +13,7 @@ json compared(const sim::DriveDescription& model, const std::vector<host::Record
   return host::comparison_json(host::compare_with("model", model, records, host::kWindow_s, {}).comparison);
 }
 
-/// Figures of all records together, to the digit.
+/// Error figures of all records together, with all digits.
 void expect_same(const json& told, const sim::DriveDescription& model, const std::vector<host::Record>& records,
                  const std::string& where) {
   const json by_compare = compared(model, records);
@@ -32,8 +32,8 @@ struct Asked {
 
 class OneMeasure : public testing::TestWithParam<Asked> {};
 
-/// Catches floors of another model, other windows, other sensors and a smoother of another model: each made compare,
-/// ladder and sentence differ by a tenth or a factor of ten.
+/// Catches noise floors of another model, other windows, other sensors and the smoother of another model. Each of these
+/// made compare, ladder and sentence differ by a tenth or by a factor of ten.
 TEST_P(OneMeasure, CommandsAgreeToTheDigit) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase asked(GetParam().name);

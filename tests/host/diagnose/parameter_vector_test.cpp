@@ -32,7 +32,7 @@ Eigen::Index place_of(const host::ParameterVector& vector, const sim::DriveDescr
 TEST(ParameterVector, ReadsWhatItWrote) {
   const sim::DriveDescription model = with_stribeck(6.0);
   const host::ParameterVector vector(model);
-  // J, B, two of Coulomb, two static levels, omega1 and omega2 forwards, one omega backwards.
+  // J, B, two Coulomb levels, two static levels, omega1 and omega2 forward, one omega backward.
   ASSERT_EQ(vector.size(), 9u);
   Eigen::VectorXd values = vector.read(model);
   for (Eigen::Index k = 0; k < values.size(); ++k) values(k) *= 1.0 + 0.01 * static_cast<double>(k + 1);

@@ -1,6 +1,6 @@
-// The two ends of the likelihood on one drive, whose friction the model cannot hold: it falls with speed, the model has
-// Coulomb friction alone. Each fit must win by its own measure, on a record that neither has seen. Catches a fit that
-// leaves the given estimate, and one that drifts from a model that is complete.
+// The two limits of the likelihood on one drive. The model cannot represent its friction, which falls with speed,
+// because the model has only Coulomb friction. Each fit must be better in its own measure, on a record that neither fit
+// has used. Catches a fit that does not change the estimate, and a fit that changes a complete model.
 #include "host/diagnose/prediction_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ host::Record steps(const sim::DriveDescription& drive, double Ku, std::uint64_t 
   return host::record_open_loop(drive, host::doublet_series(Ku * host::kStepUnit_V, 0.001), seed);
 }
 
-/// RMS error of the position, mm, of runs of a second from the measured position and speed, by the recorded command.
+/// RMS position error, mm, of predictions over a second from the measured position and speed, by the recorded command.
 double predicted_mm(const sim::DriveDescription& model, const host::Record& record) {
   const sim::Drive drive(model);
   double squares = 0.0, count = 0.0;

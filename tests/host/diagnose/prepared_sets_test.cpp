@@ -68,7 +68,7 @@ TEST_F(KeptBackBlocks, GoAcrossRecordsThatAreShorterThanARoundOfBlocks) {
 }
 
 TEST_F(KeptBackBlocks, AreTakenWhereTheAxisMoves) {
-  // Half a second of motion, a second of rest: blocks by the clock might hold rest alone.
+  // Half a second of motion, a second of rest. Blocks of equal time might contain only rest.
   host::Record record = HandMade::record(9.0);
   double x = 0.0, w = 0.0;
   for (std::size_t k = 0; k < record.size(); ++k) {

@@ -1,4 +1,4 @@
-// Stated probabilities as a function of the candidates' remaining error and of the chance of their gain.
+// Stated probabilities as a function of the candidates' remaining error and of the p-value of their gain.
 #include "host/diagnose/probability.hpp"
 
 #include <gtest/gtest.h>

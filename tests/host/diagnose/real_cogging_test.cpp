@@ -1,5 +1,5 @@
-// A motor with cogging of five orders (heitor-andrade/laas_anti_cogging, BSD-3), by the records of two days. They are
-// not part of the project; the test skips where they are absent.
+// A motor with five orders of cogging (heitor-andrade/laas_anti_cogging, BSD-3), with records of two days. They are not
+// part of the project; the test is skipped if they are absent.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 const std::filesystem::path kMotor = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "real-2" / "bldc-cogging-2";
 
-/// Catches a base that a noisy acceleration has biased, and waves that one poor held-back record refutes by chance.
+/// Catches a base that is biased by a noisy acceleration, and waves that one poor held-back record refutes by chance.
 TEST(RealCogging, IsImprovedByItsOrders) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kMotor)) GTEST_SKIP() << kMotor << " is absent";

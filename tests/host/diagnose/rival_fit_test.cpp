@@ -1,5 +1,5 @@
-// Rivals of the best candidate are fitted from its base too. The records are not part of the project; the test skips
-// where they are absent.
+// Rivals of the best candidate are also fitted from its base. The records are not part of the project; the test is
+// skipped if they are absent.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 const std::filesystem::path kSingles = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases" / "single";
 const std::filesystem::path kWeight = kSingles / "case-12", kWarm = kSingles / "case-18";
 
-/// The first `seconds` of the sweep alone.
+/// The first `seconds` of the sweep.
 DriveCase sweep_of(const std::filesystem::path& folder, double seconds) {
   DriveCase sweep(folder.string());
   std::erase_if(sweep.train, [](const host::Record& record) { return !record.path.ends_with("train-sweep.csv"); });
@@ -22,8 +22,8 @@ DriveCase sweep_of(const std::filesystem::path& folder, double seconds) {
   return sweep;
 }
 
-/// Distorted by the missing weight, the base has no Coulomb friction (8 s), so a start in proportion to that would be
-/// zero. A fit of the weight that ends worse than the base (4 s) is no reason to leave the weight out.
+/// Because the weight is missing, the base has no Coulomb friction (8 s), so a start in proportion to it would be zero.
+/// If a fit of the weight ends worse than the base (4 s), the weight must still be tried.
 TEST(RivalFit, AWeightStaysAmongItsRivalsInASweepOfEveryLength) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
@@ -34,7 +34,7 @@ TEST(RivalFit, AWeightStaysAmongItsRivalsInASweepOfEveryLength) {
   }
 }
 
-/// If rivals are equally good over both sets, one that is slightly worse on one of them is not left out.
+/// If rivals are equally good over both sets, one that is slightly worse on one of them must remain.
 TEST(RivalFit, FrictionThatWarmsUpStaysBesideFrictionAlongTheTravel) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWarm)) GTEST_SKIP() << kWarm << " is absent";
@@ -42,7 +42,7 @@ TEST(RivalFit, FrictionThatWarmsUpStaysBesideFrictionAlongTheTravel) {
   EXPECT_THAT(diagnosis.verdict.effects, testing::Contains("thermal_friction_drift"));
 }
 
-/// Catches a weight whose fit ends in a local minimum, so that a spring eleven metres away is named in its place.
+/// Catches a fit of the weight that ends in a local minimum, so that a spring eleven metres away is named instead.
 TEST(RivalFit, AWeightIsNotTakenForASpringFarAway) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";

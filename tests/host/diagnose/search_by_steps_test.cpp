@@ -1,5 +1,5 @@
-// One effect on top of another, in records of an independent plant that are not part of the project; the tests skip
-// where they are absent.
+// One effect in addition to another, in records of an independent plant. They are not part of the project; the tests
+// are skipped if they are absent.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(SearchBySteps, FindsThreeEffectsOneOnTopOfTheOther) {
   EXPECT_LT(answer.after, 1.0);
 }
 
-/// From a poor first model every start of a gap is worse than no gap. Catches a scan that gives up there.
+/// From a poor first model, every start of a gap is worse than no gap. Catches a scan that then gives up.
 TEST(SearchBySteps, FindsAGapBehindStartsThatAreWorseThanNone) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kPoorModel)) GTEST_SKIP() << kPoorModel << " is absent";

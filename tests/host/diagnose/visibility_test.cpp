@@ -1,4 +1,4 @@
-// A motion that cannot show an effect must be reported before a model gets an all-clear from it.
+// If a motion cannot show an effect, this must be reported before the model is called complete.
 #include "host/diagnose/visibility.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::vector<host::Visibility> visibility_in(const host::Record& record) {
   return host::visibility_of_effects(HandMade::model(), set, set);
 }
 
-/// The hand-made motion from `from_s` on, for `length_s`.
+/// `length_s` of the hand-made motion, from `from_s` on.
 host::Record part_of(const host::Record& whole, double from_s, double length_s) {
   host::Record part = whole;
   const auto begin = static_cast<std::ptrdiff_t>(from_s / HandMade::kPeriod_s);
@@ -35,7 +35,7 @@ TEST(Visibility, AWholeCycleShowsADelayAndACurvedFriction) {
 }
 
 TEST(Visibility, AConstantSpeedShowsNeitherDelayNorDifferenceByDirection) {
-  // Forward at 50 rad/s, for 0.9 s: nothing changes, so a delay does not show, and there is no backward motion.
+  // Forward at 50 rad/s for 0.9 s. Nothing changes, so a delay does not show, and there is no backward motion.
   const auto effects = visibility_in(part_of(HandMade::record(5.0), 0.55, 0.9));
   EXPECT_LT(seen(effects, "input_delay"), host::kVisible);
   EXPECT_LT(seen(effects, "viscous_asymmetry"), host::kVisible);

@@ -1,4 +1,4 @@
-// Records written down in closed form (made_effort.hpp).
+// Records in closed form (made_effort.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST(CertainEffects, NamesCoggingOfTwoOrders) {
   EXPECT_NEAR(std::abs(cogging.at("sine_12")), 0.005, 0.001);
 }
 
-/// Only the position is wrong; the torque does not contain the error.
+/// Only the position has the error; the torque does not.
 TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kAmplitude = 0.004, kStep = kTurn / 200000.0;
@@ -64,7 +64,7 @@ TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
   const auto misread = [&](double from_s, double to_s, unsigned seed) {
     host::Record record = record_of(
         turning, [](const Point&) { return 0.0; }, from_s, to_s, seed);
-    for (std::size_t k = 0; k < record.size(); ++k) {  // at even times
+    for (std::size_t k = 0; k < record.size(); ++k) {  // at evenly spaced times
       const double x = turning(from_s + record.t_s[k]).x;
       record.x[k] = kStep * std::round((x + kAmplitude * std::cos(3.0 * x)) / kStep);
     }
@@ -77,7 +77,7 @@ TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
       host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model), 6);
   ASSERT_THAT(named(found), testing::ElementsAre("encoder_cyclic_error"));
   EXPECT_NEAR(found.best().model.find("encoder_cyclic_error")->at("cosine_3"), kAmplitude, 0.1 * kAmplitude);
-  // A model with the effect leaves nothing to explain.
+  // With a model that has the effect, nothing remains to be explained.
   sim::DriveDescription knows = model;
   knows.effects.push_back(*found.best().model.find("encoder_cyclic_error"));
   const host::EffortScreen again =
@@ -96,7 +96,8 @@ TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
 
 TEST(CertainEffects, FindsTwoThatHideEachOther) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // Beside a weight alone, friction that differs by direction appears to vary with the speed, and vice versa.
+  // With a model that has only a weight, friction that differs by direction seems to vary with the speed, and vice
+  // versa.
   const host::EffortScreen found =
       screened([](const Point& point) { return 0.006 + 0.3 * kViscous * std::abs(point.w); });
   EXPECT_THAT(named(found), Contains("viscous_asymmetry"));
@@ -110,7 +111,7 @@ TEST(CertainEffects, GivesASpringNoWeight) {
     return named(screened([=](const Point& point) { return weight + stiffness * point.x; }));
   };
   EXPECT_EQ(kinds_of(0.0, 0.0008), std::vector<std::string>{"spring_torque"});
-  // At rest nowhere within the travel.
+  // The equilibrium of the spring is outside the travel.
   const std::vector<std::string> both = kinds_of(0.06, 0.0008);
   EXPECT_THAT(both, Contains("spring_torque"));
   EXPECT_EQ(both.size(), 2U);

@@ -1,4 +1,4 @@
-// Noise that the rows of a force balance state, against the noise that an encoder's steps make.
+// The noise stated for the rows of a force balance, compared with the noise caused by an encoder's steps.
 #include "host/effort/effort_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -10,12 +10,12 @@
 
 namespace {
 
-/// Forward and backward for a second each, with ramps in between, at a number of encoder steps a sample.
+/// Forward and backward for a second each with ramps in between, at a given number of encoder steps per sample.
 Point steady_strokes(double t_s, double w) {
   constexpr double kRamp_s = 0.1, kStroke_s = 1.0, kHalf_s = kRamp_s + kStroke_s;
   const double whole = std::floor(t_s / kHalf_s), phase = t_s - whole * kHalf_s;
   const double sign = std::fmod(whole, 2.0) == 0.0 ? 1.0 : -1.0, bend = kTurn / 2.0 / kRamp_s;
-  // A ramp from -w to w as half a cosine; over both halves the travel comes back to where it was.
+  // A ramp from -w to w as half a cosine. The travel over both halves is zero.
   const double start = sign > 0.0 ? 0.0 : w * kStroke_s;
   if (phase < kRamp_s)
     return {start - sign * w / bend * std::sin(bend * phase), -sign * w * std::cos(bend * phase),
@@ -23,7 +23,7 @@ Point steady_strokes(double t_s, double w) {
   return {start + sign * w * (phase - kRamp_s), sign * w, 0.0};
 }
 
-/// RMS torque of the acceleration's errors at steady speed, over the noise that the rows state.
+/// RMS torque due to errors of the acceleration at steady speed, over the noise stated for the rows.
 double noise_over_stated(double steps_a_sample) {
   const sim::DriveDescription model = motor();
   const double w = steps_a_sample * model.data.encoder_resolution / 1e-3;
@@ -35,7 +35,7 @@ double noise_over_stated(double steps_a_sample) {
   double squares = 0.0, count = 0.0;
   for (Eigen::Index k = 0; k < rows.acceleration.size(); ++k) {
     const double phase = std::fmod(rows.t_s(k), 1.1);
-    if (phase < 0.2 || phase > 1.0) continue;  // the filter mixes in the ramps
+    if (phase < 0.2 || phase > 1.0) continue;  // the filter includes the ramps
     squares += std::pow(model.find("inertia")->at("J") * rows.acceleration(k), 2);
     count += 1.0;
   }

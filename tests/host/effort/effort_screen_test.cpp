@@ -1,4 +1,4 @@
-// Plain least squares of the effort, on motions and efforts written down in closed form: no simulator has made them.
+// Least squares of torque or force, on motions and torques in closed form, without a simulator.
 #include "host/effort/effort_screen.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record
   return host::diagnosis_of(model, sets, screen);
 }
 
-// A search that stops at one order, counts orders over a wrong period or has the wrong sign leaves a larger residual.
+// Catches a search that stops at one order, counts orders over a wrong period, or has the wrong sign.
 TEST(EffortScreen, FindsFiveOrdersOfCoggingInASlowRecord) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Record train = record_of(slow_turning, five_orders, 0.0, 20.0, 1);
@@ -71,7 +71,7 @@ Point swinging(double t_s) {
           -0.6 * slow * slow * std::sin(slow * t_s) - 0.25 * wave * wave * std::sin(wave * t_s)};
 }
 
-// Less than a turn must suffice: a weight is neither a spring nor friction under load.
+// Less than a turn must suffice to tell a weight from a spring and from friction under load.
 TEST(EffortScreen, SeesAWeightInPartOfATurn) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto weight = [](const Point& point) { return 0.08 * std::sin(point.x + 0.3); };
@@ -86,7 +86,7 @@ TEST(EffortScreen, SeesAWeightInPartOfATurn) {
   EXPECT_NEAR(std::hypot(cogging.at("cosine"), cogging.at("sine")), 0.08, 0.002);
 }
 
-// An effect that the model already has in a nonlinear form must not be searched again.
+// An effect that the model already has in a nonlinear form must not be searched for again.
 TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto dragging = [](const Point& point) {
@@ -105,7 +105,7 @@ TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   EXPECT_LT(left(), 0.5 * without);
 }
 
-// For a machine that has warmed up between the records, no effect is missing, and the verdict reports its state.
+// If a machine has warmed up between the records, no effect is missing, and the verdict reports the change.
 TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto cold = [](const Point&) { return 0.0; };
@@ -122,7 +122,7 @@ TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
   EXPECT_NEAR(seen->judge_alone->model.find("coulomb")->at("level"), 0.7 * kCoulomb, 0.05 * kCoulomb);
 }
 
-// With an arbitrary inertia, steady speeds would fit anything.
+// With a free inertia, steady speeds would fit anything.
 TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   const auto at = [](double w) { return [w](double t_s) { return Point{w * t_s, w, 0.0}; }; };
   const auto offset = [](const Point&) { return 0.006; };
@@ -141,8 +141,8 @@ TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   EXPECT_NEAR(diagnosis.best.find("constant_torque")->at("torque"), -0.006, 0.0005);
 }
 
-/// A drive in a position loop whose amplifier gives a sixth of what the loop asks for at most, in Euler steps of 0.1
-/// ms.
+/// A drive in a position loop. Its amplifier is limited to a sixth of the largest command. Integrated in Euler steps of
+/// 0.1 ms.
 template <typename Aim>
 host::Record limited_record(Aim aim, double duration_s) {
   constexpr double kStep_s = 1e-4, kMost = 1.5, kHeavy = 0.004, kOil = 0.01, kDry = 0.4;
@@ -168,13 +168,13 @@ host::Record limited_record(Aim aim, double duration_s) {
   return record;
 }
 
-/// Swings that become faster, as far as the speed of the first allows.
+/// Swings that become faster, with the maximum speed of the first one.
 std::pair<double, double> swings(double t_s) {
   const double turn = kTurn * (0.5 + 0.28 * t_s) * t_s, faster = 1.0 + 1.125 * t_s;
   return {4.0 / faster * std::sin(turn), kTurn * 2.0 * std::cos(turn)};
 }
 
-/// From place to place in 0.35 s, with rests between.
+/// Moves from place to place in 0.35 s, with rests between.
 std::pair<double, double> moves(const std::array<double, 6>& places, double t_s) {
   constexpr double kMove_s = 0.35, kEvery_s = 0.65;
   const auto n = static_cast<std::size_t>(t_s / kEvery_s);
@@ -184,8 +184,8 @@ std::pair<double, double> moves(const std::array<double, 6>& places, double t_s)
           way * s * s * (30.0 - 60.0 * s + 30.0 * s * s) / kMove_s};
 }
 
-// Commands above a current limit have no effect. The regression has no term for this; a second mass or a ripple must
-// not replace it, since the motion shows it.
+// Commands above a current limit have no effect. The regression has no term for this. A second mass or a ripple must
+// not be named instead, because the motion shows the limit.
 TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   sim::DriveDescription model = motor();
@@ -205,8 +205,8 @@ TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   EXPECT_TRUE(screen.chosen.empty()) << screen.chosen.front().kinds.front();
 }
 
-// The friction of a screw with varying preload: less than one and a half periods over the travel, so it never repeats.
-// A period that is a few per cent off leaves a quarter of it.
+// Friction of a screw with varying preload: less than one and a half periods over the travel, so it never repeats. With
+// a period that is a few per cent wrong, a quarter of it remains.
 TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kLength = 30.0;
@@ -230,7 +230,7 @@ TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
   EXPECT_LT(screen.best().validate, 0.35 * screen.base.validate);
 }
 
-/// Swings A (1 - cos(2 pi f t)) of several frequencies, from rest, and the load on a damped spring that they shake, in
+/// Swings A (1 - cos(2 pi f t)) of several frequencies from rest, and the load on a damped spring that they excite, in
 /// steps of 0.1 ms.
 class Shaken {
  public:
@@ -273,7 +273,7 @@ class Shaken {
   double now_s_ = 0.0, x_ = 0.0, w_ = 0.0, pull_ = 0.0;
 };
 
-// The forms tried first lie 12 % apart.
+// The forms that are tried first are 12 % apart.
 TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Record train = Shaken({{4.0, 0.31}, {0.8, 0.83}, {0.6, 2.6}, {0.6, 4.9}, {0.3, 7.1}}).record(21);
@@ -290,7 +290,7 @@ TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
               0.005 * Shaken::kAntiresonance_Hz);
 }
 
-// An unknown pitch over a dozen periods.
+// An unknown pitch with a dozen periods over the travel.
 TEST(EffortScreen, FindsThePeriodToAThousandth) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kPitch = 2.3;
@@ -307,7 +307,7 @@ TEST(EffortScreen, FindsThePeriodToAThousandth) {
   EXPECT_NEAR(screen.best().model.find("cogging")->at("period"), kPitch, 1e-3 * kPitch);
 }
 
-// An effect in proportion to the effort must not be explained by the measured effort itself.
+// The measured torque itself must not explain an effect in proportion to the torque.
 TEST(EffortScreen, ClaimsNothingWhereNothingIsMissing) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto nothing = [](const Point&) { return 0.0; };

@@ -1,4 +1,4 @@
-// Free curves through effects that no formula of the base explains, on torques in closed form.
+// Free curves for effects that the formulas of the base cannot explain, on torques in closed form.
 #include "host/effort/free_curve_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::vector<const host::Record*> addresses(const std::vector<host::Record>& reco
   return result;
 }
 
-/// A notch that repeats every 0.8 mm: not a sine.
+/// A notch that repeats every 0.8 mm and is not a sine.
 double notched(const Point& point) {
   const double phase = point.x / 0.8 - std::floor(point.x / 0.8);
   return phase < 0.25 ? 0.03 : 0.0;
@@ -60,7 +60,7 @@ TEST(FreeCurve, FindsNoPhaseInWhatGoesAlongTheTravelOnce) {
   EXPECT_EQ(fit->over, "position");
 }
 
-// A curve over the current, if fitted together with a free inertia, would absorb the whole inertia.
+// If a curve over the current were fitted together with a free inertia, it would absorb the whole inertia.
 TEST(FreeCurve, OverCurrentLeavesTheInertia) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   DriveCase dead_zone("single/case-09");

@@ -1,4 +1,4 @@
-// Motions and the efforts that they take, written down in closed form: no simulator has made them.
+// Motions and the torques that they need, in closed form, without a simulator.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kInertia = 2e-5, kViscous = 5e-4, kCoulomb = 0.02, kPerAmpere = 0.03;
 
-/// One rad is one mm; the motor gives 0.03 Nm/A.
+/// One radian is one millimetre; the motor gives 0.03 Nm/A.
 inline sim::DriveDescription motor() {
   sim::DriveDescription model;
   model.data.amplifier_gain_A_per_V = 1.0;
@@ -28,7 +28,7 @@ struct Point {
   double x, w, a;
 };
 
-/// Turns at 3 to 9 rad/s, forward and backward in turn; the speed passes smoothly through zero.
+/// Turns at 3 to 9 rad/s, alternately forward and backward. The speed passes smoothly through zero.
 inline Point slow_turning(double t_s) {
   const double slow = kTurn * 0.05, wave = kTurn * 0.31;
   return {-8.0 / slow * std::cos(slow * t_s) - 1.0 / wave * std::cos(wave * t_s),
@@ -36,15 +36,15 @@ inline Point slow_turning(double t_s) {
           8.0 * slow * std::cos(slow * t_s) + wave * std::cos(wave * t_s)};
 }
 
-/// A record of a motion and of the effort that it takes beyond inertia and friction. The sampling jitters (s), the
-/// current comes in steps of 2 mA.
+/// A record of a motion and of the torque that it needs in addition to inertia and friction. The sampling has jitter
+/// (s); the current has steps of 2 mA.
 template <typename Motion, typename Further>
 host::Record record_of(Motion motion, Further further, double from_s, double to_s, unsigned seed,
                        double jitter = 2e-5) {
   host::Record record;
   record.path = "made.csv";
   record.sample_period_s = 0.001;
-  record.header["effort_timing_samples"] = "0";  // the current acts at the instant of its row
+  record.header["effort_timing_samples"] = "0";  // the current acts at the time of its row
   std::mt19937 random(seed);
   std::normal_distribution<double> jitter_s(0.0, jitter), noise_A(0.0, 0.01);
   const double step = kTurn / 20000.0;

@@ -1,4 +1,4 @@
-// A record whose motion is written down: speeds up, runs, brakes, stands, and the same backwards.
+// A record with a given motion: acceleration, constant speed, braking, rest, and the same backward.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,8 @@ struct HandMade {
     return drive;
   }
 
-  /// Acceleration, rad/s^2, over one cycle of 5 s: +100 for 0.5 s, 0 for 1 s, -100 for 0.5 s, stands 0.5 s, mirrored.
+  /// Acceleration, rad/s^2, over one cycle of 5 s: +100 for 0.5 s, 0 for 1 s, -100 for 0.5 s, rest for 0.5 s, then
+  /// mirrored.
   static double acceleration(double t_s) {
     const double phase = std::fmod(t_s, 5.0);
     const double half = std::fmod(phase, 2.5);
@@ -35,7 +36,7 @@ struct HandMade {
     return half < 2.0 ? -sign * 100.0 : 0.0;
   }
 
-  /// The tachometer carries a fast sine of the size of its noise.
+  /// The tachometer signal contains a fast sine with the size of its noise.
   static host::Record record(double duration_s = 10.0) {
     const sim::DataSheet data = model().data;
     host::Record record;

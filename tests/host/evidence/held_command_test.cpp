@@ -1,4 +1,4 @@
-// A current that changes within a row, on a drive that friction stops within that row: worked out by hand.
+// A current that changes within a row, on a drive that friction stops within that row; computed by hand.
 #include "host/evidence/held_command.hpp"
 
 #include <gtest/gtest.h>
@@ -43,9 +43,9 @@ std::vector<double> speeds(const host::Record& record) {
   return w;
 }
 
-// 1 A until 1.75 ms: 500 rad/s^2 against the friction. Then -1 A: 1500 rad/s^2 until it stops at 2.333 ms, then
-// -500 rad/s^2. From 2.75 ms nothing: 500 rad/s^2 until it rests at 3.167 ms. The mean of the third row, -0.75 A, would
-// give -0.15 rad/s at 3 ms.
+// 1 A until 1.75 ms: 500 rad/s^2 against the friction. Then -1 A: -1500 rad/s^2 until it stops at 2.333 ms, then -500
+// rad/s^2. From 2.75 ms on no current: 500 rad/s^2 until it rests at 3.167 ms. The mean of the third row, -0.75 A,
+// would give -0.15 rad/s at 3 ms.
 TEST(HeldCommand, ChangesTheCurrentWhereItActs) {
   const std::vector<double> w = speeds(record_of({1.0, 1.0, -1.0, 0.0, 0.0, 0.0}, "0.25"));
   EXPECT_NEAR(w[1], 0.5, 1e-9);
@@ -54,7 +54,7 @@ TEST(HeldCommand, ChangesTheCurrentWhereItActs) {
   EXPECT_EQ(w[4], 0.0);
 }
 
-// Later by 1.5 rows than a held one: row 0 lasts until 2.5 ms.
+// 1.5 rows later than a held current: row 0 lasts until 2.5 ms.
 TEST(HeldCommand, MovesALateCurrentByWholeRowsToo) {
   const std::vector<double> w = speeds(record_of({1.0, 0.0, 0.0, 0.0, 0.0}, "2.0"));
   EXPECT_NEAR(w[2], 1.0, 1e-9);

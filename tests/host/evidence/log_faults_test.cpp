@@ -24,7 +24,7 @@ void shift_later(std::vector<double>& values, std::size_t samples) {
 
 class LogFaults : public testing::Test {
  protected:
-  /// The one fault that is found, or nullptr (with a failure) where there is another number of them.
+  /// The only fault that is found; null (and a test failure) if their number is not one.
   void expect_only(LogFaultKind kind, const std::string& channel, double size, double tolerance) {
     const auto faults = host::log_faults(record, model);
     ASSERT_EQ(faults.size(), 1u) << (faults.empty() ? "" : faults[0].message);
@@ -39,7 +39,7 @@ class LogFaults : public testing::Test {
 
 TEST_F(LogFaults, NoneInASoundRecord) { EXPECT_TRUE(host::log_faults(record, model).empty()); }
 
-/// Catches a noise floor of zero, and a model of another machine, without a message.
+/// Catches a noise floor of zero and a model of another machine without a message.
 TEST_F(LogFaults, OfADataSheetAreSaidAndEndNothing) {
   model.data.encoder_resolution = 0.0;
   expect_only(LogFaultKind::no_encoder, "x_mm", 0.002, 1e-9);
@@ -63,7 +63,7 @@ TEST_F(LogFaults, NoneWhereInertiaAndFrictionDiffer) {
 TEST_F(LogFaults, CounterRunsOver) {
   const double wrap = 8192 * model.data.encoder_resolution;
   for (double& x : record.x) x -= wrap * std::floor(x / wrap);
-  // The motion crosses a multiple of 16.384 mm many times; the first time upwards.
+  // The motion crosses a multiple of 16.384 mm many times; the first crossing is upward.
   expect_only(LogFaultKind::integer_wrap, "x_mm", -wrap, 2 * model.data.encoder_resolution);
 }
 
@@ -74,7 +74,7 @@ TEST_F(LogFaults, AnAngleBeginsAgainAfterEachTurn) {
 }
 
 TEST_F(LogFaults, TwoNewZerosAreNoAngle) {
-  // As far apart, but the axis goes beyond them.
+  // The same distance, but the axis moves beyond it.
   for (std::size_t k = 700; k < record.size(); ++k) record.x[k] -= k < 1200 ? 17.3 : 34.6;
   const auto faults = host::log_faults(record, model);
   ASSERT_FALSE(faults.empty());
@@ -87,7 +87,7 @@ TEST_F(LogFaults, NewZeroAtStandstill) {
 }
 
 TEST_F(LogFaults, SamplesDroppedUnderSteadyTimeStamps) {
-  // Five samples of 50 rad/s * 1.6 mm/rad * 1 ms each.
+  // Each is five samples of 50 rad/s * 1.6 mm/rad * 1 ms.
   for (auto* channel : {&record.u_V, &record.x, &record.w})
     channel->erase(channel->begin() + 1000, channel->begin() + 1005);
   record.t_s.resize(record.x.size());
@@ -125,7 +125,7 @@ TEST_F(LogFaults, TachometerLateByWholeSamples) {
   expect_only(LogFaultKind::time_shift, "w_rad_s", 0.004, 1e-9);
 }
 
-/// Like a logger that merges channels of two clocks.
+/// As from a logger that merges channels with two clocks.
 TEST_F(LogFaults, TachometerLateByPartsOfASample) {
   for (std::size_t k = record.size() - 1; k >= 9; --k) record.w[k] = 0.4 * record.w[k - 8] + 0.6 * record.w[k - 9];
   const auto faults = host::log_faults(record, model);
@@ -135,7 +135,7 @@ TEST_F(LogFaults, TachometerLateByPartsOfASample) {
   EXPECT_FALSE(faults[0].fatal);
 }
 
-/// Like a busy host whose log was interpolated while the axis continued to move.
+/// As from a busy computer that interpolates the log while the axis moves on.
 TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
   for (std::size_t k = 1001; k < 1007; ++k) record.x[k] = record.x[1000] + 0.01 * static_cast<double>(k - 1000);
   const auto faults = host::log_faults(record, model);
@@ -145,7 +145,7 @@ TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
   EXPECT_FALSE(faults[0].fatal);
 }
 
-/// Like a controller that reads its position every tenth sample.
+/// As from a controller that reads its position every tenth sample.
 TEST_F(LogFaults, APositionThatIsHeldOverSomeRowsIsNoNewZero) {
   record.w.clear();
   for (std::size_t k = 0; k < record.size(); ++k) record.x[k] = record.x[k - k % 10];

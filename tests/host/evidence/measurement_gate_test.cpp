@@ -1,5 +1,4 @@
-// Faults inserted into good records of an independent plant: in the training records, in the validation record, in
-// both.
+// Faults in good records of an independent plant: in the training records, in the validation record, or in both.
 #include "host/evidence/measurement_gate.hpp"
 
 #include <gmock/gmock.h>
@@ -51,7 +50,7 @@ void scale(std::vector<double>& values, double factor) {
 
 void drop_rows(Record& record) {
   constexpr std::ptrdiff_t kRows = 8;
-  constexpr std::size_t kSteady = 20;  // rows before and after, of nearly the same travel
+  constexpr std::size_t kSteady = 20;  // rows before and after with nearly the same travel
   std::size_t fastest = kSteady;
   double most = 0.0;
   for (std::size_t k = kSteady; k + 2 * kSteady < record.size(); ++k) {
@@ -68,7 +67,7 @@ void drop_rows(Record& record) {
 
 struct Injection {
   const char* name;
-  const char* family;  ///< expected name of the fault in the gate
+  const char* family;  ///< name of the fault that the gate must report
   bool fatal;
   std::function<void(Record&, const sim::DataSheet&)> spoil;
 };
@@ -93,7 +92,7 @@ const Injection kInjections[] = {
     {"gap", "gap", true, [](Record& r, const auto&) { drop_rows(r); }},
     {"scaled_copy", "scaled_copy", true,
      [](Record& r, const auto&) {
-       // Three decimals, as a log would have them.
+       // Three decimals, as in a log.
        for (std::size_t k = 0; k < r.size(); ++k) r.x[k] = std::round(1e6 * (3.0 * r.u_V[k] + 1.0)) / 1e6;
      }},
     {"derived", "duplicate", false,
@@ -103,7 +102,7 @@ const Injection kInjections[] = {
     {"late", "time_shift", false, [](Record& r, const auto&) { std::rotate(r.w.begin(), r.w.end() - 4, r.w.end()); }},
 };
 
-/// The command's current, logged `late` samples too late.
+/// The current of the command, logged `late` samples too late.
 Record with_late_current(Record record, const sim::DataSheet& data, std::size_t late) {
   record.i_A = record.u_V;
   scale(record.i_A, data.amplifier_gain_A_per_V);
@@ -113,7 +112,7 @@ Record with_late_current(Record record, const sim::DataSheet& data, std::size_t 
   return record;
 }
 
-/// The families that the gate names; fatal ones only where `fatal`.
+/// The families that the gate names; if `fatal`, only the fatal ones.
 std::vector<std::string> named(const Case& spoilt, bool fatal) {
   std::vector<host::LogFault> faults;
   try {
@@ -129,7 +128,7 @@ std::vector<std::string> named(const Case& spoilt, bool fatal) {
   return families;
 }
 
-// A logger that filters its current logs it late in all its records, and two of them may not show it.
+// A logger that filters its current logs it late in all of its records, although two of them may not show it.
 TEST(LateCurrent, IsShiftedBackInAllRecordsOfItsLogger) {
   constexpr std::size_t kLate = 5;
   const Case sound(fs::path(AXIS_TEST_DATA) / "drive-cases" / "none" / "case-00");
@@ -194,7 +193,7 @@ TEST_F(Gate, LetsSoundRecordsOfEveryShippedDrivePassInSilence) {
   }
 }
 
-/// Several minutes: every case of the shared records, each record by itself as well.
+/// Takes several minutes: every case of the shared records, and each record alone.
 TEST_F(Gate, LetsSoundRecordsOfAllDrivesPassInSilence) {
   if (std::getenv("AXIS_ALL_LOG_FAULTS") == nullptr) GTEST_SKIP() << "set AXIS_ALL_LOG_FAULTS to go through all cases";
   std::size_t seen = 0;
@@ -235,7 +234,7 @@ TEST_F(Gate, NamesARecordWhoseCommandWasScaledBetweenTheRecords) {
   EXPECT_THAT(named(sound, true), testing::ElementsAre("records_disagree"));
 }
 
-/// A slow record shows only friction; its poorly known inertia may be off by the same factor by chance.
+/// A slow record shows only friction. Its inertia is uncertain and may be wrong by the same factor by chance.
 TEST(SoundRecords, OneThatTellsLittleOfTheInertiaConvictsNobody) {
   const host::SimulatedNull null = host::simulated_null(15);
   ASSERT_EQ(null.train.size(), 3U);

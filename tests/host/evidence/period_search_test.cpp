@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-/// Travels from 0 to `travel` and back again, 0.04 mm a sample, each weighed by 2.
+/// Travel from 0 to `travel` and back, 0.04 mm per sample, each sample with weight 2.
 host::TravelSignal there_and_back(double travel) {
   host::TravelSignal signal;
   constexpr double kStep = 0.04;
@@ -29,15 +29,15 @@ void add(host::TravelSignal& signal, double period, double cosine, double sine) 
 
 TEST(PeriodSearch, FindsTwoPeriodsThatAreNoMultiplesOfEachOther) {
   host::TravelSignal signal = there_and_back(120.0);
-  const double second = 10.0 / std::sqrt(7.0);  // 3.78 mm: an irrational ratio to the first
+  const double second = 10.0 / std::sqrt(7.0);  // 3.78 mm; an irrational ratio to the first period
   add(signal, 10.0, 0.30, -0.40);
   add(signal, second, 0.10, 0.20);
   const auto peaks = host::find_periods(signal, 0.5, 60.0, 2);
   ASSERT_EQ(peaks.size(), 2u);
-  // The grid of orders is refined to 1/32 of the travel's own resolution 1/travel: period^2/(32 travel) is one step.
+  // The grid of orders is refined to 1/32 of the resolution 1/travel, so one step is period^2/(32 travel).
   EXPECT_NEAR(peaks[0].period, 10.0, 10.0 * 10.0 / (32.0 * 120.0));
   EXPECT_NEAR(peaks[1].period, second, second * second / (32.0 * 120.0));
-  // Amplitude^2 of the two: 0.25 and 0.05 of 0.30.
+  // Squared amplitudes of the two: 0.25 and 0.05 of 0.30.
   EXPECT_NEAR(peaks[0].share, 0.25 / 0.30, 0.01);
   EXPECT_NEAR(peaks[1].share, 0.05 / 0.30, 0.01);
   EXPECT_NEAR(std::hypot(peaks[0].cosine, peaks[0].sine), 0.5, 0.02);

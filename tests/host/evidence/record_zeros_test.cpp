@@ -1,4 +1,4 @@
-// Records written down from their equation of motion: speed and acceleration are exact, the effort is what they need.
+// Records from an equation of motion: speed and acceleration are exact, and the torque is what they need.
 #include "host/evidence/record_zeros.hpp"
 
 #include <gtest/gtest.h>
@@ -25,14 +25,14 @@ sim::DataSheet sheet() {
   return data;
 }
 
-/// Effort beyond inertia and friction, by travel from the machine's own zero (mm) and speed (rad/s).
+/// Torque beyond inertia and friction, over travel from the machine's own zero (mm) and speed (rad/s).
 using Pattern = std::function<double(double x_mm, double w)>;
 
 double cogging(double x_mm, double /*w*/) {
   return 0.15 * std::cos(kTurn * x_mm / kPeriod_mm) + 0.05 * std::sin(kTurn * 2.0 * x_mm / kPeriod_mm);
 }
 
-/// Strokes of 30 mm with 2 mm of a faster swing on top, 8 s at 1 kHz. The encoder's zero lies at `zero_mm`.
+/// Strokes of 30 mm with a faster swing of 2 mm, 8 s at 1 kHz. The encoder's zero is at `zero_mm`.
 host::Record strokes(double stroke_Hz, double zero_mm, const Pattern& pattern) {
   host::Record record;
   record.path = "strokes.csv";
@@ -72,7 +72,7 @@ TEST(RecordZeros, AreSilentWhereTheyAgreeOrNothingTells) {
   EXPECT_TRUE(zeros_of(strokes(0.4, 0.0, cogging), strokes(0.23, kPeriod_mm, cogging)).empty());
   const auto nothing = [](double, double) { return 0.0; };
   EXPECT_TRUE(zeros_of(strokes(0.4, 0.0, nothing), strokes(0.23, 0.6, nothing)).empty());
-  // Another pattern is no other zero: another size, or another period.
+  // A different pattern is not a different zero: another size, or another period.
   const auto larger = [](double x, double w) { return 2.0 * cogging(x, w); };
   EXPECT_TRUE(zeros_of(strokes(0.4, 0.0, cogging), strokes(0.23, 0.6, larger)).empty());
   const auto wider = [](double x, double w) { return cogging(0.8 * x, w); };
@@ -84,7 +84,7 @@ TEST(RecordZeros, AFrictionThatTurnsWithTheMotionIsNoOtherZero) {
   const auto one_way = [&](double sign) {
     host::Record record = strokes(0.1, 0.0, friction);
     for (std::vector<double>* column : {&record.t_s, &record.x, &record.i_A}) {
-      std::vector<double> kept;  // a quarter of a stroke: all of it the same way
+      std::vector<double> kept;  // a quarter of a stroke, all in one direction
       const std::size_t begin = sign > 0.0 ? 0 : 3000;
       kept.assign(column->begin() + static_cast<std::ptrdiff_t>(begin),
                   column->begin() + static_cast<std::ptrdiff_t>(begin + 2000));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDuration_s = 10.0;
 
-/// The motion behind HandMade::record(), by integrating its acceleration: exact, since it is constant in each sample.
+/// The motion of HandMade::record(), by integration of its acceleration. Exact, because it is constant in each sample.
 struct TrueMotion {
   std::vector<double> x, w;
 
@@ -52,7 +52,7 @@ TEST(SmoothedMotion, IsAsNearToTheTruthAsItSays) {
     if (std::abs(x_off.back()) <= 2.0 * std::sqrt(motion.x_variance[k])) ++x_within;
     if (std::abs(w_off.back()) <= 2.0 * std::sqrt(motion.w_variance[k])) ++w_within;
   }
-  // Two standard deviations hold 95 % of normal errors.
+  // Two standard deviations contain 95 % of normal errors.
   EXPECT_GE(x_within, 0.95 * static_cast<double>(x_off.size()));
   EXPECT_GE(w_within, 0.95 * static_cast<double>(w_off.size()));
   const double resolution = HandMade::model().data.encoder_resolution, lead = HandMade::model().data.lead;
@@ -61,7 +61,8 @@ TEST(SmoothedMotion, IsAsNearToTheTruthAsItSays) {
   EXPECT_LT(rms(w_off), 0.1 * resolution / std::sqrt(6.0) / HandMade::kPeriod_s / lead);
 }
 
-/// Errors of the smoothed speed at a steady number of counts a sample, over the deviation that the smoother states.
+/// Errors of the smoothed speed at a steady number of counts per sample, over the standard deviation that the smoother
+/// states.
 double speed_error_over_stated(double counts_a_sample) {
   const sim::DataSheet data = HandMade::model().data;
   const double w = counts_a_sample * data.encoder_resolution / data.lead / HandMade::kPeriod_s;
@@ -82,8 +83,8 @@ double speed_error_over_stated(double counts_a_sample) {
   return rms(off);
 }
 
-/// Near a whole number of counts a sample the errors of successive counts are alike (1.7 deviations if they are taken
-/// for independent).
+/// Near a whole number of counts per sample, the errors of successive counts are alike (1.7 standard deviations if they
+/// are assumed independent).
 TEST(SmoothedMotion, StatesTheErrorOfCountsThatRepeat) {
   EXPECT_LT(speed_error_over_stated(4.05), 1.2);
   EXPECT_LT(speed_error_over_stated(3.02), 1.2);
@@ -97,7 +98,7 @@ TEST(SmoothedMotion, KnowsWhereTheAxisStands) {
   for (std::size_t k = 0; k < truth.w.size(); ++k) {
     if (motion.standing[k]) {
       EXPECT_EQ(motion.w[k], 0.0);
-      // One count of travel from rest at the acceleration of 100 rad/s^2: 0.5 rad/s.
+      // One count of travel from rest at 100 rad/s^2: 0.5 rad/s.
       EXPECT_LE(std::abs(truth.w[k]), 0.51) << k;
     }
   }
@@ -121,7 +122,7 @@ TEST(SmoothedMotion, ShiftsAddUpToTheSmoothingOfTheShiftedRecord) {
   const std::size_t row = 1000;
   const std::vector<double> reading(2 * smoother.reach(), 0.5);
   const host::ShiftWeights::Shift shift = smoother.shift_weights(row).shift(reading, {});
-  // A constant offset of the encoder shifts the travel by itself and the speed not at all.
+  // A constant offset of the encoder shifts the travel by this offset, and does not change the speed.
   EXPECT_NEAR(shift.x, 0.5, 1e-3);
   EXPECT_NEAR(shift.w, 0.0, 1e-3 * std::abs(smoother.motion().w[row]));
 }

@@ -8,7 +8,7 @@
 namespace {
 
 TEST(SpeedCoverage, NamesTheSpeedsBelowTheOnlyOneThatIsHeld) {
-  // The record holds 50 rad/s alone: 80 mm/s.
+  // The record contains only 50 rad/s: 80 mm/s.
   const host::Record record = HandMade::record();
   const host::PreparedRecord prepared = host::prepare(record, HandMade::model());
   const std::optional<host::SpeedGap> gap = host::widest_speed_gap({&prepared}, HandMade::model().data);

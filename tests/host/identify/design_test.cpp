@@ -1,8 +1,8 @@
 // Estimator and controller against the printed design of Erkorkmaz & Altintas, IJMTM 41 (2001), pp. 1502-1504.
 //
 // The printed digits follow from the full-precision inputs below and Ru = 0.05/Ka^2 (not from the printed (42), (44)).
-// Expected values: an independent computation from those inputs, which agrees with every digit of (49), (51) and the
-// matrices of p. 1502. rg is 10/(2 pi) unrounded.
+// Expected values come from an independent computation with these inputs, which agrees with every digit of (49), (51)
+// and the matrices of p. 1502. rg is 10/(2 pi), not rounded.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

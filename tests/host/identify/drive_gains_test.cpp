@@ -1,5 +1,5 @@
-// Ka from the current, Kt*Ka from an added inertia, on plants whose gains are known. Catches a gain that a dead time, a
-// current loop or an offset biases, and an interval that does not cover the truth.
+// Ka from the current, and Kt*Ka from an added inertia, on plants with known gains. Catches a gain that is biased by a
+// dead time, a current loop or an offset, and an interval that does not contain the true value.
 #include "host/identify/drive_gains.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ host::Record steps(double factor, double added, std::uint64_t seed) {
   return host::record_open_loop(drive, host::doublet_series(10.0 * host::kStepUnit_V, 0.001), seed);
 }
 
-/// The current of an amplifier with dead time (samples) and a loop of first order, sampled with each row.
+/// The current of an amplifier with dead time (samples) and a first-order loop, sampled at each row.
 void add_current(host::Record& record, int dead, double loop_s, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, kNoise_A);
@@ -57,7 +57,7 @@ TEST(AmplifierGain, IsFoundBehindDeadTimeAndCurrentLoop) {
   EXPECT_GE(covered, kTrials * 85 / 100);
 }
 
-/// Volts of a winding: the current follows them and the speed.
+/// Voltage of a winding: the current depends on the voltage and on the speed.
 TEST(AmplifierGain, AWindingsVoltageIsNoCommand) {
   host::Record record = steps(1.0, 0.0, 1);
   for (std::size_t k = 0; k < record.size(); ++k) record.i_A.push_back((record.u_V[k] - 0.05 * record.w[k]) / 0.4);

@@ -24,7 +24,7 @@ sim::DriveDescription motor_with_ripple(double order, double amplitude_Nm) {
   return model;
 }
 
-/// A speed that wanders round 10 rad/s, and the torque that a motor with this ripple needs for it, by hand.
+/// A speed that varies around 10 rad/s, and the torque that a motor with this ripple needs for it, computed by hand.
 host::Record turning(double order, double amplitude_Nm) {
   host::Record record;
   record.path = "turning.csv";
@@ -41,7 +41,7 @@ host::Record turning(double order, double amplitude_Nm) {
 }
 
 TEST(InverseModel, ARippleBeyondTheFilterIsFilteredAsTheMeasuredTorqueIs) {
-  // 72 orders at 10 rad/s are 115 Hz; the torque is filtered below 30 Hz, where nothing of them is left.
+  // 72 orders at 10 rad/s are 115 Hz. The torque is filtered below 30 Hz, so nothing of them remains.
   const sim::DriveDescription model = motor_with_ripple(72.0, 0.5);
   const host::Record record = turning(72.0, 0.5);
   host::MotionOptions options;
@@ -55,9 +55,10 @@ TEST(InverseModel, ASlowRippleCounts) {
   EXPECT_NEAR(host::relative_error(motor_with_ripple(1.0, 0.0), record), 0.5 / std::sqrt(2.0) / 1.25, 0.05);
 }
 
-/// Catches a dead band that swallows a slow axis whole: half a degree a second, and a hundredth of that.
+/// Catches a dead band that removes all samples of a slow axis: half a degree per second, and a hundredth of that.
 TEST(InverseModel, ASlowAxisHasAnErrorToo) {
-  // The ripple that the model has and the drive has not, by its cosine's mean square over 0 to 1.2 rad and 0 to 0.12.
+  // The ripple, which the model has and the drive has not: mean square of its cosine over 0 to 1.2 rad and 0 to 0.12
+  // rad.
   for (const auto& [slow, ripple] : {std::pair(0.03, 0.40), {0.003, 0.50}}) {
     host::Record record = turning(1.0, 0.0);
     for (std::size_t k = 0; k < record.size(); ++k) {

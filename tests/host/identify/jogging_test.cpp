@@ -1,4 +1,4 @@
-// The jogging procedure in closed loop, with the control core itself, on plants that obey Table 1 of the paper.
+// The jogging procedure in closed loop with the control core itself, on plants that follow Table 1 of the paper.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr double kLead = 10.0 / (2.0 * std::numbers::pi);
 
-/// Values of Table 1, typed again, as a closed form; and the values known before jogging, (42).
+/// Values of Table 1, typed again, as a closed form; and the values known before the jogs, (42).
 struct JoggedAxis {
   const char* name;
   double B, static_Nm[2], coulomb_Nm[2], omega1[2], omega2[2];  // magnitudes
@@ -41,7 +41,7 @@ double true_friction_Nm(const JoggedAxis& axis, double w) {
   return std::copysign(level, w);
 }
 
-/// The model before jogging: data sheet, inertia and the least-squares estimate of B.
+/// The model before the jogs: data sheet, inertia and the least-squares estimate of B.
 sim::DriveDescription believed(const JoggedAxis& axis) {
   sim::DriveDescription model = *host::paper_drive(axis.name);
   model.effects = {{.kind = "inertia", .parameters = {{"J", axis.J}}, .ci95 = {}, .from = {}},
@@ -79,7 +79,7 @@ TEST_P(Jogging, FindsTheConstantSpeedsOfThePaperBothWays) {
     EXPECT_NEAR(points[k].speed, commanded, 0.01 * std::abs(commanded)) << k;
     if (std::abs(commanded) > 0.1) {
       EXPECT_NEAR(points[k].effort, true_friction_Nm(GetParam(), commanded), 0.005) << k;
-    } else {  // 0.063 rad/s: the noise of Table 1 drives the speed through zero
+    } else {  // 0.063 rad/s: with the noise of Table 1 the speed passes through zero
       EXPECT_LT(std::abs(points[k].effort), std::abs(true_friction_Nm(GetParam(), commanded))) << k;
     }
     if (std::abs(commanded) < 0.1 || std::abs(commanded) > 0.25) {
@@ -98,7 +98,7 @@ TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
   EXPECT_LT(worst_curve_error_Nm(axis, found.fit.law), axis.curve_tolerance_Nm);
   EXPECT_NEAR(found.fit.law.viscous, axis.B, 0.02 * axis.B);
   EXPECT_TRUE(found.fit.has_stribeck);
-  // Twelve speeds leave omega2 of the x axis within an interval wider than itself; nothing else is to be warned of.
+  // With twelve speeds, the interval of omega2 of the x axis is wider than its value. There must be no other warning.
   EXPECT_THAT(found.warnings, testing::Each(HasSubstr("omega2_positive_rad_s")));
   const sim::EffectEntry* coulomb = found.model.find("coulomb");
   EXPECT_EQ(coulomb->at("negative"), -found.fit.coulomb[1].value);
@@ -115,7 +115,7 @@ TEST_P(Jogging, TachometerGainErrorIsFoundAndNotAbsorbedInViscousFriction) {
   EXPECT_NEAR(found.tachometer->gain.value, 1.01, 0.002);
   EXPECT_NEAR(found.fit.law.viscous, axis.B, 0.03 * axis.B);
   EXPECT_THAT(found.warnings, Contains(HasSubstr("tachometer reads +1.0")));
-  // The disturbance estimate does absorb it: that is what the cross-check is for.
+  // The disturbance estimate contains the error, which the cross-check must show.
   ASSERT_TRUE(found.viscous_by_disturbance);
   EXPECT_GT(std::abs(found.viscous_by_disturbance->value - axis.B), 0.1 * axis.B);
 }
@@ -124,8 +124,8 @@ TEST_P(Jogging, ThePapersProcedureReachesWhatItsAuthorsReport) {
   const JoggedAxis& axis = GetParam();
   const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis)}), believed(axis),
                                              FrictionMethod::paper);
-  // An independent implementation of (53)-(62) on such plants: B' within 1 % (x) and 4 % (y), Tcoul within 0.2 % and
-  // 2.3 %, Tstat 2 % low. Its noise was another, hence half as much again.
+  // An independent implementation of (53)-(62) on such plants gives B' within 1 % (x) and 4 % (y), Tcoul within 0.2 %
+  // and 2.3 %, Tstat 2 % too low. Its noise was different, so the tolerances are half as much again.
   const bool x = std::string(axis.name) == "x";
   EXPECT_NEAR(found.fit.law.viscous, axis.B, (x ? 0.015 : 0.06) * axis.B);
   EXPECT_NEAR(found.fit.law.positive.coulomb, axis.coulomb_Nm[0], (x ? 0.01 : 0.035) * axis.coulomb_Nm[0]);

@@ -1,4 +1,4 @@
-// Values that no drive has are reported, whatever fitted them.
+// Values that no drive can have are reported, no matter which method fitted them.
 #include "host/identify/plausibility.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ sim::DriveDescription with(const char* effect, const char* id, double value, std
   return model;
 }
 
-/// All doubts as one text; those that refuse end in '!'.
+/// All doubts as one text. Those that forbid a design end with '!'.
 std::string doubts(const sim::DriveDescription& model) {
   std::string text;
   for (const host::Doubt& doubt : host::doubts_of(model)) text += doubt.message + (doubt.refuses ? "!\n" : "\n");
@@ -81,7 +81,7 @@ TEST(Plausibility, WhoKnowsBetterMayAcceptAnEffect) {
   }
 }
 
-// From a weak log, friction wrote a model that no command could read.
+// With the friction from a weak log, a model was written that no command could read.
 TEST(Plausibility, WhatNoReaderTakesIsMovedOntoItsBound) {
   sim::DriveDescription model = with("viscous", "B", -0.01, {-0.02, 0.005});
   EXPECT_THROW((void)host::parse_model(host::format_model(model), "weak.toml"), host::Failure);

@@ -1,5 +1,5 @@
-// Axes on which gravity, a spring or the drag of a fluid is larger than friction. Motions and efforts are written down
-// in closed form: no simulator has made them.
+// Axes on which gravity, a spring or the drag of a fluid is larger than friction. Motions and torques are in closed
+// form, without a simulator.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,12 +24,12 @@ host::Identification identified(Motion motion, Further further) {
   return host::identify_drive(measured, sheet, host::IdentificationMethod::unbiased_ls);
 }
 
-/// The model as the next command reads it from this command's file.
+/// The model as the next command reads it from the file of this command.
 sim::DriveDescription read_again(const host::Identification& found) {
   return host::parse_model(host::format_model(found.model), "model.toml");
 }
 
-/// Turns and swings of many accelerations at every place.
+/// Turns and swings with many accelerations at every position.
 Point lively(double t_s) {
   Point sum{0.0, 0.0, 0.0};
   for (const auto& [amplitude, hertz] : {std::pair(1.0, 0.31), {0.4, 0.83}, {0.12, 2.3}}) {
@@ -41,7 +41,7 @@ Point lively(double t_s) {
   return sum;
 }
 
-// Without the curve over the travel, the weight makes the inertia arbitrary.
+// Without the curve over the travel, the weight would make the inertia arbitrary.
 TEST(PositionTorque, AWeightOnAnArmDoesNotBendTheInertia) {
   const host::Identification found = identified(lively, [](const Point& at) { return 0.12 * std::sin(at.x + 0.3); });
   EXPECT_TRUE(found.beside_travel);
@@ -57,7 +57,7 @@ TEST(PositionTorque, WhereNothingGoesWithThePositionNoCurveIsDrawn) {
   EXPECT_NEAR(found.estimate.inertia.value, kInertia, 0.02 * kInertia);
 }
 
-// A vertical axis needs torque upwards in both directions: no friction level has that sign.
+// A vertical axis needs upward torque in both directions, which no friction level can have.
 TEST(PositionTorque, AWeightBeyondFrictionLeavesAModelThatCanBeRead) {
   constexpr double kWeight = 2.5 * kCoulomb;
   const host::Identification found = identified(lively, [](const Point&) { return kWeight; });
@@ -69,7 +69,7 @@ TEST(PositionTorque, AWeightBeyondFrictionLeavesAModelThatCanBeRead) {
   EXPECT_THAT(found.warnings, Contains(HasSubstr("constant_torque")));
 }
 
-// Drag with the square of the speed bends the line through the speeds so far that its level pushes both ways.
+// Drag with the square of the speed tilts the fitted line so much that its level has the wrong sign in both directions.
 TEST(PositionTorque, ADragThatSteepensLeavesAModelThatCanBeRead) {
   const auto fast = [](double t_s) {
     const Point at = lively(t_s);

@@ -1,4 +1,4 @@
-// Filters, least squares and tachometer calibration of the estimates. Expected values are closed forms.
+// Filters, least squares and tachometer calibration of the estimates. Expected values are in closed form.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +24,7 @@ std::vector<double> cosine(double frequency_Hz, double rate_Hz, std::size_t samp
   return signal;
 }
 
-/// Complex amplitude of a frequency in the middle half of a signal.
+/// Complex amplitude at a frequency in the middle half of a signal.
 std::complex<double> amplitude_of(const std::vector<double>& signal, double frequency_Hz, double rate_Hz) {
   std::complex<double> sum = 0.0;
   const std::size_t begin = signal.size() / 4, end = begin + signal.size() / 2;
@@ -68,7 +68,7 @@ TEST(ZeroPhaseFilter, DecimationKeepsEveryNthSampleOfASlowSignal) {
   const std::vector<double> slow = cosine(2.0, 1000.0, 3000);
   const std::vector<double> low = host::decimate(slow, 10, 1000.0);
   ASSERT_EQ(low.size(), 300u);
-  // At 2 Hz the Chebyshev ripple is at its trough's flank: within 0.1 dB.
+  // At 2 Hz the Chebyshev ripple is near its minimum: within 0.1 dB.
   for (std::size_t k = 30; k < 270; ++k) EXPECT_NEAR(low[k], slow[10 * k], 0.012) << k;
 }
 
@@ -81,7 +81,7 @@ TEST(LeastSquares, SolvesAnExactSystemAndReportsItsCondition) {
   const host::Regression found = regression.solve();
   EXPECT_NEAR(found.parameters(0), 3.0, 1e-12);
   EXPECT_NEAR(found.parameters(1), -0.5, 1e-12);
-  EXPECT_NEAR(found.condition_number, 1.0, 1e-12);  // orthogonal columns, whatever their units
+  EXPECT_NEAR(found.condition_number, 1.0, 1e-12);  // orthogonal columns in any units
   EXPECT_EQ(found.rows, 100u);
 }
 
@@ -90,7 +90,7 @@ TEST(LeastSquares, ManyRowsAtATimeAreTheSameRows) {
   std::normal_distribution<double> normal;
   std::vector<std::array<double, 3>> rows(1000);
   for (auto& row : rows) row = {normal(random), 2.0 + normal(random), normal(random)};
-  host::BlockedRegression<2> together(300), singly(300);  // blocks end inside what goes in at a time
+  host::BlockedRegression<2> together(300), singly(300);  // blocks end between rows that are added at once
   together.add_rows(0, rows.size(), [&](std::size_t k, auto&& row) {
     for (int c = 0; c < 3; ++c) row(c) = rows[k][static_cast<std::size_t>(c)];
   });
@@ -109,7 +109,7 @@ TEST(LeastSquares, SingularEquationsHaveNoEstimate) {
   EXPECT_TRUE(std::isnan(found.parameters(0)));
 }
 
-/// A record at rest gives a regression on sliding samples no row at all.
+/// In a record at rest, a regression on sliding samples has no rows.
 TEST(LeastSquares, NoRowsHaveNoEstimateEither) {
   const host::Regression found = host::BlockedRegression<4>(10).solve();
   EXPECT_TRUE(std::isinf(found.condition_number));
@@ -119,7 +119,7 @@ TEST(LeastSquares, NoRowsHaveNoEstimateEither) {
 }
 
 TEST(LeastSquares, IntervalsCoverTheTruthWithColouredResiduals) {
-  // Mean of an AR(1) process with coefficient 0.95: white-noise intervals would cover 25 % of the time.
+  // Mean of an AR(1) process with coefficient 0.95. White-noise intervals would contain it in only 25 % of the cases.
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
   int covered = 0;
@@ -134,7 +134,7 @@ TEST(LeastSquares, IntervalsCoverTheTruthWithColouredResiduals) {
     const host::Regression found = regression.solve();
     covered += std::abs(found.parameters(0)) <= found.t_quantile * std::sqrt(found.covariance(0, 0)) ? 1 : 0;
   }
-  // 95 % of 400 with a binomial deviation of 4.4; blocks of ten correlation lengths lose about 2 %.
+  // 95 % of 400 with a binomial standard deviation of 4.4. Blocks of ten correlation lengths lose about 2 %.
   EXPECT_GE(covered, 360);
   EXPECT_LE(covered, 396);
 }

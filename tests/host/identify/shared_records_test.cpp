@@ -1,5 +1,5 @@
-// Records that the project did not make: the EMPS benchmark and drives simulated by an independent plant. They are not
-// part of the project; the tests skip where the folder is absent.
+// Records from outside the project: the EMPS benchmark and drives simulated by an independent plant. They are not part
+// of the project; the tests are skipped if the folder is absent.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,8 +47,8 @@ class Emps : public testing::Test {
 };
 
 TEST_F(Emps, InverseModelReproducesThePublishedIdentification) {
-  // Janot, Gautier, Brunot (2019): M 95.1089 kg, Fv 203.5034, Fc 20.3935, offset -3.1648, force error 4.0834 %;
-  // the same coefficients on the other experiment: 5.9824 %.
+  // Janot, Gautier, Brunot (2019): M 95.1089 kg, Fv 203.5034, Fc 20.3935, offset -3.1648, force error 4.0834 %; with
+  // the same coefficients 5.9824 % on the other experiment.
   const auto found = host::identify_drive(host::MeasurementGate(drive).admit({read("DATA_EMPS.mat")}), drive,
                                           host::IdentificationMethod::unbiased_ls);
   EXPECT_NEAR(found.estimate.inertia.value, 95.1, 0.1);
@@ -82,7 +82,7 @@ TEST_F(Emps, WithoutForceConstantTheErrorNamesIt) {
   }
 }
 
-/// One drive of the independent plant in which nothing is hidden.
+/// One drive of the independent plant, without hidden effects.
 class IndependentDrive : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
@@ -139,8 +139,8 @@ TEST_P(IndependentDrive, IsIdentifiedFromItsEncoderAlone) {
 TEST_P(IndependentDrive, FrictionCurveComesFromItsJogs) {
   const auto found = host::identify_friction(host::MeasurementGate(model).admit({read("train-jog.csv")}), model,
                                              host::FrictionMethod::joint);
-  ASSERT_EQ(found.points.size(), 24u);   // twelve speeds both ways
-  EXPECT_FALSE(found.fit.has_stribeck);  // the truth has none
+  ASSERT_EQ(found.points.size(), 24u);   // twelve speeds in both directions
+  EXPECT_FALSE(found.fit.has_stribeck);  // the drive has none
   EXPECT_NEAR(found.fit.law.viscous, value("B"), 0.01 * value("B"));
   EXPECT_NEAR(found.fit.law.positive.coulomb, coulomb(0), 0.01 * coulomb(0));
   EXPECT_NEAR(found.fit.law.negative.coulomb, -coulomb(1), -0.01 * coulomb(1));

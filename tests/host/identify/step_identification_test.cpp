@@ -1,4 +1,4 @@
-// Open-loop steps on a plant that obeys Table 1 of the paper, at the paper's seven scalings of the input.
+// Open-loop steps on a plant that follows Table 1 of the paper, at the paper's seven scalings of the input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 using host::IdentificationMethod;
 using testing::HasSubstr;
 
-// Table 1, typed again here so that a slip in the drive's description cannot cancel out.
+// Table 1, typed again, so that a typing error in the description of the drive shows.
 struct Truth {
   const char* axis;
   double J, B, coulomb[2];
@@ -31,7 +31,7 @@ host::Record steps(const char* axis, double Ku) {
   return host::record_open_loop(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001), 1);
 }
 
-/// As a logger of half the rate would have it.
+/// The record of a logger with half the rate.
 host::Record every_second_row(const host::Record& record) {
   host::Record coarse = record;
   coarse.sample_period_s *= 2.0;
@@ -64,7 +64,7 @@ TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
   }
 }
 
-/// The paper's method stacks samples; the one that smooths takes each record as it comes.
+/// The paper's method stacks samples; the method with a filter uses each record at its own rate.
 TEST_P(StepIdentification, TakesRecordsOfSeveralRates) {
   const Truth& truth = GetParam();
   const sim::DriveDescription sheet = data_sheet_of(truth.axis);
@@ -82,8 +82,8 @@ TEST_P(StepIdentification, TakesRecordsOfSeveralRates) {
   }
 }
 
-/// A logger whose clock swings by 0.4 ms at 60 Hz stamps positions where the axis was not: differentiated twice that is
-/// as large as the acceleration. The tachometer next to it knows better.
+/// A logger whose clock jitters by 0.4 ms at 60 Hz logs positions with wrong times. Differentiated twice, the error is
+/// as large as the acceleration. The tachometer is better.
 TEST_P(StepIdentification, TakesTheMotionFromTheSpeedWhereThePositionJitters) {
   const Truth& truth = GetParam();
   const sim::DriveDescription sheet = data_sheet_of(truth.axis);
@@ -141,7 +141,7 @@ TEST_P(StepIdentification, UnbiasedEstimateHoldsFromKu10AndSimpleOneIsWorse) {
 
     const auto simple = host::identify_drive(host::MeasurementGate(data_sheet_of(truth.axis)).admit({record}),
                                              data_sheet_of(truth.axis), IdentificationMethod::simple_ls);
-    // The paper, (41) against (42): friction that is left out makes J and B look larger, B several times.
+    // The paper, (41) and (42): if friction is left out, J and B become too large, B by several times.
     EXPECT_GT(simple.estimate.inertia.value, 1.01 * unbiased.estimate.inertia.value);
     EXPECT_GT(simple.estimate.viscous.value, 1.5 * unbiased.estimate.viscous.value);
     EXPECT_GT(simple.relative_error, 3.0 * unbiased.relative_error);

@@ -1,4 +1,4 @@
-// Reading in a separate process: whatever the reader does, the caller gets its log or a refusal.
+// Reading in a separate process: in every case the caller gets a log or an error message.
 #include "host/import/confined_reader.hpp"
 
 #include <gmock/gmock.h>
@@ -105,12 +105,12 @@ TEST(ConfinedReader, HasNoMoreMemoryThanAGigabyte) {
               HasSubstr("more than 1024 MiB"));
 }
 
-/// As the workbench's server and the Python module call it.
+/// As the server of the workbench and the Python module call it.
 TEST(ConfinedReader, ReadsForSeveralThreadsAtOnce) {
   if (kInstrumented) GTEST_SKIP() << "the sanitizer's allocator keeps the locks of other threads in a forked child";
   std::atomic<bool> over = false;
   std::thread busy([&] {
-    while (!over) std::vector<std::string>(100, std::string(1000, 'x')).clear();  // holds the heap's locks
+    while (!over) std::vector<std::string>(100, std::string(1000, 'x')).clear();  // holds the locks of the heap
   });
   std::vector<std::thread> readers;
   std::atomic<int> read = 0, refused = 0;

@@ -1,4 +1,4 @@
-// Records out of MATLAB files and tables, even and uneven ones.
+// Records from MATLAB files and tables, with even and uneven sampling.
 #include "host/import/import_record.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ std::string message_of(const host::Log& log, std::string_view map, std::optional
   return "no failure";
 }
 
-/// Writes variables into a .mat file with the library that reads them in the field.
+/// Writes variables to a .mat file with the library that also reads them.
 class MatFile {
  public:
   MatFile(const std::string& path, mat_ft version) : file_(Mat_CreateVer(path.c_str(), nullptr, version)) {}
@@ -108,7 +108,7 @@ TEST_P(ImportMat, DoublesIntegersMatricesAndStructs) {
   ASSERT_EQ(record.size(), static_cast<std::size_t>(kMatRows));
   EXPECT_DOUBLE_EQ(record.sample_period_s, 0.001);
   EXPECT_DOUBLE_EQ(record.u_V[0], -15000.0 / 3276.8);
-  EXPECT_DOUBLE_EQ(record.x[0], -100.0);  // below zero: nothing wraps as an unsigned byte would
+  EXPECT_DOUBLE_EQ(record.x[0], -100.0);  // negative, so no value wraps as an unsigned byte would
   EXPECT_DOUBLE_EQ(record.x[99], -1.0);
   EXPECT_DOUBLE_EQ(record.x[110], -11.0);
   EXPECT_DOUBLE_EQ(record.w[50], 20.0 * std::cos(1.0));
@@ -154,7 +154,7 @@ TEST(ImportLog, NotAMatlabFile) {
   }
 }
 
-/// A table of time, command and position; `stamp` gives the time of row k.
+/// A table of time, command and position. `stamp` gives the time of row k.
 template <typename Stamp>
 std::string table(std::string_view heading, std::string_view separator, Stamp stamp) {
   std::string text(heading);
@@ -209,7 +209,7 @@ TEST(ImportTable, BadFieldsAreNamedWhereTheyMatter) {
 
 double jittered(int k) { return 0.001 * k + (k % 3 == 2 ? 0.0002 : 0.0); }
 
-// A step taken the wrong way round, or one range too few, leaves jumps.
+// Catches a step with the wrong sign, and a range that is added once too few.
 TEST(ImportUnwrap, AnAngleGoesOnBeyondItsTurn) {
   constexpr double kTurn = 2.0 * M_PI;
   const auto angle = [](int k) { return 9.0 * std::sin(0.01 * k); };
@@ -244,7 +244,7 @@ TEST(ImportJitter, ResampledAndStated) {
     EXPECT_NEAR(record.t_s[k], 0.001 * static_cast<double>(k), 1e-12);
     EXPECT_NEAR(record.x[k], 3.0 * record.t_s[k], 2e-6);  // the position is a straight line in time
   }
-  // Row 2 was commanded 0.2 ms late: for that long row 1 still held.
+  // Row 2 was commanded 0.2 ms late. During this time row 1 was still held.
   EXPECT_NEAR(record.u_V[2], 0.2 * std::sin(0.1) + 0.8 * std::sin(0.2), 2e-6);
   EXPECT_THAT(record.header.at("resampled"),
               AllOf(HasSubstr("to 0.001 s from 200 rows"), HasSubstr("0.2 ms at worst")));

@@ -1,4 +1,4 @@
-// Inputs that cost more memory or time than any measurement: refused with the limit's name.
+// Inputs that need more memory or time than any measurement are rejected, with the limit in the message.
 #include "host/input_limits.hpp"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ TEST(InputLimits, HoldForNumbersOfANumpyArray) {
   EXPECT_THAT(refusal([&] { host::parse_npy(file, "a.npy"); }), HasSubstr("the most that a log may have"));
 }
 
-/// A packed variable of a few kB may announce gigabytes: here its dimensions say so, and nothing is unpacked.
+/// A compressed variable of a few kB may announce gigabytes. Here only its dimensions do, and nothing is unpacked.
 TEST(InputLimits, HoldForWhatAMatlabFileUnpacksTo) {
   const TemporaryFolder folder;
   const std::string path = folder.path("a.mat");

@@ -38,7 +38,7 @@ void expect_the_log(const host::Record& record) {
   }
 }
 
-/// Rows t, u, x; `{}` in `stamp` takes the time in seconds.
+/// Rows of t, u, x. `{}` in `stamp` stands for the time in seconds.
 std::string rows(const char* separator, bool decimal_comma) {
   std::string text;
   for (int k = 0; k < kRows; ++k) {
@@ -79,7 +79,7 @@ TEST(LoggerFormats, APreambleIsLeftOutAndStated) {
   EXPECT_THAT(record.header.at("imported_preamble"), HasSubstr("4 lines"));
 }
 
-/// A first row that lacks a field must not pass for a preamble.
+/// A first row that lacks a field must not be taken for a preamble.
 TEST(LoggerFormats, RowsOfNumbersAreNoPreamble) {
   EXPECT_THROW(import("0.0,1.0\n" + rows(",", false), "t_s=1,u_V=2,x_mm=3"), host::Failure);
 }
@@ -134,7 +134,7 @@ TEST(LoggerFormats, Utf16OfBothKindsWithAndWithoutMark) {
   expect_the_log(host::parse_record(utf16(record, false, true), "r.csv"));
 }
 
-/// A .npy file as NEP 1 describes it.
+/// A .npy file according to NEP 1.
 std::string npy(const std::string& description, const std::string& data) {
   std::string header = description;
   while ((10 + header.size() + 1) % 64 != 0) header += ' ';

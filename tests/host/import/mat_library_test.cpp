@@ -1,4 +1,4 @@
-// matio is loaded only when it is needed; messages if it is missing.
+// matio is loaded only when it is needed. If it is missing, a message says so.
 #include "host/import/mat_library.hpp"
 
 #include <gmock/gmock.h>

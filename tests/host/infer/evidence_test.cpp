@@ -34,7 +34,7 @@ MatrixXd line() {
 
 VectorXd wave(double waves) { return (VectorXd::LinSpaced(kRows, 0.0, 2.0 * 3.14159265358979 * waves)).array().sin(); }
 
-/// Hats over the row's number.
+/// Hats over the row number.
 host::Memory memory_over_rows() {
   host::Memory memory;
   constexpr Index kKnots = 10;
@@ -67,13 +67,13 @@ TEST(Evidence, FindsNoiseAndItsCorrelation) {
   const host::EvidenceFit fit =
       evidence_of(line() * Eigen::Vector2d(2.0, 1.0) + autoregressive(0.6, 0.1, 1)).fit(line(), kWide2);
   EXPECT_NEAR(fit.colour.from_row_to_row(), 0.6, 0.1);
-  // Student's t of 4 degrees has its scale below the deviation of Gaussian noise.
+  // The scale of Student's t with 4 degrees of freedom is below the standard deviation of Gaussian noise.
   EXPECT_GT(fit.noise, 0.06);
   EXPECT_LT(fit.noise, 0.11);
   EXPECT_NEAR(fit.factors(0), 2.0, 0.1);
 }
 
-/// A drift of 0.95 a row beside white noise three times its step: one correlation alone cannot have both.
+/// A drift of 0.95 per row and white noise of three times its step. A single correlation cannot describe both.
 TEST(NoiseColour, TellsADriftFromTheWhiteNoiseBesideIt) {
   constexpr Index kMany = 8000;
   constexpr double kDrift = 0.95, kStep = 0.1, kWhite = 0.3;
@@ -95,7 +95,8 @@ TEST(NoiseColour, TellsADriftFromTheWhiteNoiseBesideIt) {
 }
 
 TEST(Evidence, NoiseThatIsCorrelatedIsNoEffect) {
-  // A period that is claimed from correlated noise alone costs a mechanic a day: of 100 draws at most a few.
+  // A period that is claimed from correlated noise alone costs a mechanic a day, so at most a few of 100 draws may do
+  // so.
   int claimed = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const host::Evidence evidence = evidence_of(autoregressive(0.8, 0.1, seed));
@@ -111,7 +112,7 @@ TEST(Evidence, AWaveIsFoundInCorrelatedNoise) {
 }
 
 TEST(Evidence, WhatIsSmoothGoesToTheMemoryRatherThanToTheNearestEffect) {
-  // A bump: of all that is offered, half a wave comes nearest.
+  // A bump: half a wave is the closest of all candidates.
   const VectorXd bump = (-(VectorXd::LinSpaced(kRows, -4.0, 4.0).array()).square()).exp();
   const host::Evidence evidence = evidence_of(2.0 * bump + autoregressive(0.3, 0.05, 5));
   const VectorXd half = (VectorXd::LinSpaced(kRows, 0.0, 3.14159265358979)).array().sin();

@@ -1,4 +1,4 @@
-// Models for other programs compute the same values there as here.
+// Exported models compute the same values in other programs as here.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Everything that formulas can express, and two effects that they cannot.
+/// All effects that formulas can express, and two effects that they cannot.
 constexpr const char* kModel = R"(format = "axis-model/1"
 name = "x 1"
 [drive]
@@ -165,7 +165,7 @@ TEST_F(ExportModel, XmlReadsBack) {
   }
 }
 
-/// What the component puts out, and that it names itself as its .hal file does, is tried in LinuxCNC: tests/linuxcnc.
+/// tests/linuxcnc checks in LinuxCNC the output of the component, and that its name is the one in its .hal file.
 TEST_F(ExportModel, HalLinesNameThePinsAsHalcompileDoes) {
   const host::Export exported = to(host::ExportTarget::linuxcnc, "hal_x_friction_.comp");
   EXPECT_THAT(exported.files[0].text, HasSubstr("component hal_x_friction_ "));
@@ -198,7 +198,7 @@ TEST_F(ExportModel, WhatIsLeftOutIsNamed) {
   EXPECT_TRUE(kinds(host::ExportTarget::urdf, "x.urdf").contains("inertia"));
 }
 
-/// A motion whose effort is known: what the cogging takes of it is what the export says.
+/// A motion whose torque is known. The share of the cogging in it must be that in the export.
 TEST_F(ExportModel, SharesAreThoseOfTheRecord) {
   sim::DriveDescription model = model_;
   std::erase_if(model.effects, [](const sim::EffectEntry& e) { return e.kind == "current_loop_lag"; });

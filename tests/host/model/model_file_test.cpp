@@ -1,4 +1,4 @@
-// Model files: content of valid ones, messages about invalid ones, and writing without loss.
+// Model files: contents of valid ones, messages about invalid ones, and writing without loss.
 #include "host/model/model_file.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// The x axis of the paper (Table 1); line numbers below count from its first line.
+// The x axis of the paper (Table 1). Line numbers below count from its first line.
 constexpr const char* kPaperX = R"(format = "axis-model/1"
 name = "x"
 
@@ -169,7 +169,7 @@ TEST(ReadModel, SeveralHarmonicsButOneInertia) {
               AllOf(HasSubstr("line 37"), HasSubstr("inertia stands in the model twice")));
 }
 
-/// Taking apart a tree of 50,000 levels exhausts the stack, so that such keys are refused before one is made.
+/// The destruction of a tree with 50,000 levels exhausts the stack, so such keys are rejected before it is built.
 TEST(ReadModel, KeysOfEndlesslyManyParts) {
   std::string key = "a", quoted = "'a'";
   for (int k = 0; k < 50'000; ++k) key += ".a", quoted += " . 'a'";
@@ -225,7 +225,7 @@ TEST(ReadModel, MissingFields) {
               HasSubstr("missing effect inertia"));
 }
 
-/// Catches a reader that names one missing field after the other.
+/// Catches a reader that names only one missing field at a time.
 TEST(ReadModel, NamesAllThatADataSheetLacks) {
   const std::string head = "format = \"axis-model/1\"\n[drive]\n";
   EXPECT_THAT(message_of(head + "kind = \"rotary\"\n[drive.tach]\n"),
@@ -238,7 +238,7 @@ TEST(ReadModel, NamesAllThatADataSheetLacks) {
               AllOf(HasSubstr("kind = "), HasSubstr("sample_period_s"), Not(HasSubstr("lead"))));
 }
 
-/// A log of the current needs no amplifier: a sheet without one stays without one.
+/// A log of the current needs no amplifier gain: a data sheet without one stays without one.
 TEST(ReadModel, TorqueOrForceOfTheCurrentAlone) {
   const std::string common = "format = \"axis-model/1\"\nname = \"k\"\n[drive]\nsample_period_s = 0.001\n";
   for (const std::string& sheet :
@@ -257,7 +257,7 @@ TEST(ReadModel, TorqueOrForceOfTheCurrentAlone) {
   EXPECT_FALSE(host::is_known_by_current(host::parse_model(kPaperX, "x.toml").data));
 }
 
-/// Catches a model that keeps the machine busy for minutes.
+/// Catches a model that takes minutes of computation.
 TEST(ReadModel, HoldsNoMoreThanAModelDoes) {
   std::string many = kPaperX, list, knots;
   for (int k = 0; k < 62; ++k)
@@ -345,7 +345,7 @@ TEST(WriteModel, EveryEffectOfTheCatalogueBothKinds) {
       if (model.find(info->kind) != nullptr || info->curve) continue;
       sim::EffectEntry entry{std::string(info->kind), {}, {}, "r.csv"};
       for (const sim::ParameterInfo& parameter : info->parameters) {
-        if (!parameter.pair_of.empty() || parameter.id == "saturation") continue;  // the other form
+        if (!parameter.pair_of.empty() || parameter.id == "saturation") continue;  // has another form
         const double value = parameter.lower + (parameter.upper - parameter.lower) / 3.0;
         entry.parameters[std::string(parameter.id)] = value;
         entry.ci95[std::string(parameter.id)] = {value - 1.0, value + 1.0};
@@ -365,7 +365,7 @@ harmonics = [
 ]
 )";
 
-// An order that is written under the id of another, or dropped, does not come back.
+// Catches an order that is written under the id of another order, or is lost.
 TEST(WriteModel, KeepsTheOrdersOfAPeriod) {
   const sim::DriveDescription model = host::parse_model(std::string(kPaperX) + kSeveralOrders, "drive.toml");
   const sim::EffectEntry& cogging = *model.find("cogging");

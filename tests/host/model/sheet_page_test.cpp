@@ -1,4 +1,4 @@
-// The page of the data sheet's format: it is the one in the repository, and says what the reader asks for.
+// The page on the data sheet's format must be the one in the repository and agree with the reader.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST(SheetPage, IsTheOneInTheRepository) {
       << "write it anew: make pages";
 }
 
-// Catches a field that the page calls required and the reader does not, in any of the four examples.
+// Catches a field that the reader requires but one of the four examples lacks.
 TEST(SheetPage, ExamplesAreReadAndLackNothingThatIsNeeded) {
   ASSERT_EQ(examples().size(), 4U);
   for (const std::string& example : examples()) {
@@ -43,7 +43,7 @@ TEST(SheetPage, ExamplesAreReadAndLackNothingThatIsNeeded) {
   }
 }
 
-// Lines that tell a user to fill in a field which its own table does not have.
+// Catches lines that tell the user to fill in a field that its own table does not have.
 TEST(SheetText, EveryLineExplainsItsField) {
   for (const sim::DriveKind kind : {sim::DriveKind::rotary, sim::DriveKind::linear}) {
     for (const bool by_current : {true, false}) {

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Logs in binary files, and of flight controllers, by writers of their own (log_files.py): binary_logs.py AXISTOOL
+"""Binary logs and logs of flight controllers, from independent writers (log_files.py): binary_logs.py AXISTOOL
 
-Every channel must come with its values, its unit and the period of its rows; what a file leaves open must be asked."""
+Every channel must be read with its values, its unit and the period of its rows. The program must ask for information
+that the file lacks."""
 
 import json
 import math
@@ -36,13 +37,13 @@ class BinaryLogs(unittest.TestCase):
         return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
 
     def open(self, path, *arguments):
-        """The document, and its channels by their names."""
+        """The JSON document, and its channels by name."""
         run = self.run_tool('open', path, '--json', '-', *arguments)
         document = json.loads(run.stdout)
         return document, {c['name']: c for c in document['files'][0]['channels']}
 
     def records(self, path, *arguments):
-        """Rows of each record, by its file's name: {column: values}."""
+        """Rows of each record, by file name: {column: values}."""
         out = self.path('out')
         run = self.run_tool('open', path, '-o', out, '--yes', *arguments)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
@@ -110,7 +111,7 @@ class BinaryLogs(unittest.TestCase):
 
     def test_the_data_sheet_says_what_a_joint_does(self):
         path = self.path('a.mcap')
-        made.mcap(path, {'/joint_states': made.messages(rows=120)})  # too few for the verdict, which would take long
+        made.mcap(path, {'/joint_states': made.messages(rows=120)})  # too few for a verdict, which would take long
         for kind, told in (('rotary', ['--lead', '10']), ('linear', [])):
             sheet = self.path(f'{kind}.toml')
             run = self.run_tool('sheet', 'x', '-o', sheet, '--kind', kind, *told, '--kt', '0.5', '--step', '1e-4',
@@ -148,7 +149,7 @@ class BinaryLogs(unittest.TestCase):
         self.assertIn('mcap recover', self.refusal(self.path('a.mcap')))
         made.mcap(self.path('b.mcap'), {'/joint_states': made.messages(rows=50)})
         whole = bytearray(pathlib.Path(self.path('b.mcap')).read_bytes())
-        whole[whole.find(b'joint1') + 200] ^= 1  # within the chunk: its checksum no longer holds
+        whole[whole.find(b'joint1') + 200] ^= 1  # within the chunk, so that its checksum is wrong
         pathlib.Path(self.path('b.mcap')).write_bytes(whole)
         self.assertIn('damaged', self.refusal(self.path('b.mcap')))
         made.bag(self.path('c.db3'), {'/joint_states': made.messages(rows=50)})

@@ -85,7 +85,7 @@ TEST(ChannelName, WordsThatLookLikeUnitsAreNone) {
 TEST(ChannelName, AxesByLettersAndNumbers) {
   EXPECT_EQ(named("X1_ActualPosition").axis, "x1");
   EXPECT_EQ(named("pos (3)").axis, "3");
-  EXPECT_EQ(named("Analog 2 Torque").axis, "");  // the logger's channel, not an axis
+  EXPECT_EQ(named("Analog 2 Torque").axis, "");  // a channel of the logger, not an axis
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 constexpr double kResistance = 1.3, kEmf = 0.051, kGain = 8.5, kStep_mm = 0.0015, kNoise_A = 0.01, kPeriod_s = 1e-3;
 enum class Supply { voltage, current, bus };
 
-/// A second at rest, then five in motion; Euler's steps of a motor with dry friction.
+/// A second at rest, then five seconds in motion; Euler steps of a motor with dry friction.
 host::LoggedMotion motor_on(Supply supply, unsigned noise = 3) {
   std::mt19937 seed(noise);
   std::normal_distribution<double> normal;
@@ -46,7 +46,7 @@ TEST(DriveConstants, AVoltageTellsTheWinding) {
   EXPECT_FALSE(found.amplifier_gain_A_per_V.has_value());
 }
 
-/// Catches a back-EMF by chance: of every second noise it is positive.
+/// Catches a back-EMF by chance, which is positive for every second noise.
 TEST(DriveConstants, ACommandTellsTheAmplifier) {
   for (unsigned noise = 1; noise <= 8; ++noise) {
     const host::DriveConstants found = host::constants_of(motor_on(Supply::current, noise));
@@ -55,7 +55,7 @@ TEST(DriveConstants, ACommandTellsTheAmplifier) {
   }
 }
 
-/// Catches a supply's voltage taken for a command.
+/// Catches a supply voltage that is taken for a command.
 TEST(DriveConstants, ASupplyTellsNothing) {
   const host::DriveConstants found = host::constants_of(motor_on(Supply::bus));
   EXPECT_FALSE(found.amplifier_gain_A_per_V.has_value());

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Damaged and hostile binary logs: hostile_logs.py AXISTOOL [TRIES [SEED]]
 
-Whatever a file holds, the program reads it or refuses it with exit code 9: no signal, no gigabyte, no long wait,
-nothing written. Valid files of every kind by writers of their own (log_files.py), cut off at TRIES lengths, which must be
-refused, and with TRIES random changes each; and files made on purpose."""
+The program must read every file or reject it with exit code 9, without a signal, a gigabyte of memory, a long delay or
+written files. The files are: valid files of every kind from independent writers (log_files.py), cut off at TRIES
+lengths, which must be rejected; the same with TRIES random changes each; and hostile files."""
 
 import os
 import random
@@ -24,8 +24,8 @@ except ImportError:
 
 PROGRAM = sys.argv[1]
 TRIES = int(sys.argv[2]) if len(sys.argv) > 2 else 30
-END = 64  # bytes at the end of a file that a reader does not need
-LONGEST_S, MOST_BYTES = 60.0, 1 << 30  # a damaged file may take 5 s of a processor, which a busy machine shares
+END = 64  # bytes at the end of a file, without which a reader can read it
+LONGEST_S, MOST_BYTES = 60.0, 1 << 30  # a damaged file may take 5 s of processor time
 
 
 def valid_files(folder):
@@ -44,7 +44,7 @@ def valid_files(folder):
     made.mcap(path('lz4.mcap'), topics, 'lz4', per_chunk=50)
     made.mcap(path('zstd.mcap'), topics, 'zstd', per_chunk=50)
     made.bag(path('bag.db3'), topics)
-    one = {'x': columns['x']}  # a cut between variables leaves a whole file
+    one = {'x': columns['x']}  # a file that is cut between variables is valid
     made.mat5(path('five.mat'), one)
     made.mat5(path('seven.mat'), one, compressed=True)
     if h5py is None:
@@ -66,7 +66,7 @@ def valid_files(folder):
 
 
 def made_on_purpose(folder):
-    """{kind: (path, word of its refusal)}"""
+    """{kind: (path, word in the error message)}"""
     out = {}
 
     def path(name, word):
@@ -87,7 +87,7 @@ def made_on_purpose(folder):
                  'SELECT id, 1 AS topic_id, 1 AS timestamp, zeroblob(60000000) AS data FROM c')
     base.commit()
     base.close()
-    nothing = made.record(0x80, bytes(250 << 20))  # a record that readers pass over
+    nothing = made.record(0x80, bytes(250 << 20))  # a record that readers skip
     inner = made.packed(nothing, 'zstd')
     chunk = made.record(6, struct.pack('<QQQI', 0, 0, len(nothing), 0) + made.text('zstd') +
                         struct.pack('<Q', len(inner)) + inner)
@@ -96,7 +96,7 @@ def made_on_purpose(folder):
     with open(path('claims.mcap', 'unpacks to more'), 'wb') as file:
         claim = made.record(6, struct.pack('<QQQI', 0, 0, 1 << 62, 0) + made.text('lz4') + bytes(8))
         file.write(b'\x89MCAP0\r\n' + claim)
-    names = [str(k) for k in range(900)]  # of other joints in each message
+    names = [str(k) for k in range(900)]  # different joints in each message
     crowd = [(k, made.joint_state(k + 1, [f'{k}.{name}' for name in names], [], [], [])) for k in range(3)]
     made.mcap(path('crowd.mcap', 'more than 1000 joints'), {'/joint_states': crowd})
     if h5py is None:
@@ -113,7 +113,7 @@ def made_on_purpose(folder):
 
 
 def run(path):
-    """(exit code, what it says, seconds, bytes)"""
+    """(exit code, output, seconds, bytes)"""
     started = time.monotonic()
     with tempfile.TemporaryFile() as said:
         child = subprocess.Popen([PROGRAM, 'import', path, '--list'], stdout=said, stderr=said)
@@ -124,7 +124,7 @@ def run(path):
 
 
 def damaged(whole, chance):
-    """The file with some bytes changed, doubled or left out."""
+    """The file with some bytes changed, repeated or removed."""
     data = bytearray(whole)
     for _ in range(chance.choice((1, 1, 2, 8))):
         at = chance.randrange(len(data))

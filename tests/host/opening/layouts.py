@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Twenty layouts of one made motion, opened by the program: layouts.py AXISTOOL [FOLDER]
 
-Each layout is written with a delimiter, a decimal sign, a preamble, a language, units, an encoding and a time of its own.
-Right: every quantity that the log holds is taken with its factor (within 0.5 %), or what the log cannot tell stands in
-`missing` or `asks`. Silently wrong: a wrong factor or quantity that is neither asked nor below 90 % sure. At least 19 must be
+Each layout has its own delimiter, decimal sign, preamble, language, units, encoding and time. Right: every quantity in
+the log is taken with its factor (within 0.5 %), and information that the log lacks is in `missing` or `asks`. Silently
+wrong: a wrong factor or quantity without a question and with a confidence of 90 % or more. At least 19 layouts must be
 right, and none silently wrong.
 """
 import json
@@ -15,7 +15,7 @@ import tempfile
 
 ROWS, RATE = 4000, 1000.0
 PI = math.pi
-LEAD = 10.0 / (2 * PI)  # mm a radian
+LEAD = 10.0 / (2 * PI)  # mm per radian
 
 
 def motion(k, rate=RATE):
@@ -32,7 +32,7 @@ def motion(k, rate=RATE):
 
 def table(path, names, columns, sep=',', comma=False, before='', after_names='', encoding='utf-8', digits=6, rows=ROWS,
           stamp=lambda k: k / RATE, rate=RATE, blank=''):
-    """columns: functions of (x, v, i); the first column is the stamp unless it is None."""
+    """columns: functions of (x, v, i); the first column is the time stamp; if it is None, there are no stamps."""
     lines = [before] if before else []
     if names is not None:
         lines.append(sep.join(names))
@@ -58,7 +58,7 @@ MM, CUR, RPM_F = ('x_mm', 1.0), ('i_A', 1.0), ('w_rad_s', PI / 30)
 
 
 def layouts(folder):
-    """(name, path, {channel: (taken_as, factor)}, what must be said to be missing or asked)"""
+    """(name, path, {channel: (taken_as, factor)}, text that must be in `missing` or `asks`)"""
     out = []
 
     def add(name, expected, lacks=(), **how):
@@ -103,7 +103,7 @@ def layouts(folder):
 
 
 def judge(opened, expected, lacks):
-    """('right' | 'incomplete' | 'wrong', why)"""
+    """('right' | 'incomplete' | 'wrong', reason)"""
     channels = {c['name']: c for c in opened['files'][0]['channels']}
     said = ' '.join(opened['asks'] + opened['files'][0]['missing'])
     verdict, why = 'right', ''

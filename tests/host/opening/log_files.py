@@ -1,4 +1,4 @@
-"""Binary logs by writers of their own: MCAP by mcap.dev/spec, CDR by OMG DDS-XTypes 1.3, bags by the tables of
+"""Independent writers of binary logs: MCAP by mcap.dev/spec, CDR by OMG DDS-XTypes 1.3, bags by the tables of
 rosbag2_storage_sqlite3, HDF5 by h5py, .npy and .npz by NumPy."""
 
 import math
@@ -25,7 +25,7 @@ def motion(k, rate=500.0):
 
 
 class Cdr:
-    """Plain CDR: numbers at multiples of their size behind the encapsulation header."""
+    """Plain CDR: numbers aligned to their size after the encapsulation header."""
 
     def __init__(self, big=False):
         self.order = '>' if big else '<'
@@ -63,7 +63,7 @@ def joint_state(stamp_ns, names, positions, velocities, efforts, big=False, fram
 
 
 def messages(names=('joint1',), rows=2000, rate=500.0, big=False, stamped=True, scale=1.0, sign=1.0):
-    """(time of recording, message) of joints that move alike, each at half the amplitude of the one before."""
+    """(time of recording, message) of joints with the same motion, each with half the amplitude of the previous one."""
     out = []
     for k in range(rows):
         x, v, m = motion(k, rate)
@@ -159,7 +159,7 @@ def blackbox_decode(path, period_us, rows=3000):
 
 
 def blackbox_explorer(path, period_us, rows=3000):
-    """As the CSV export of github.com/betaflight/blackbox-log-viewer writes it: the head of the log in front."""
+    """As the CSV export of github.com/betaflight/blackbox-log-viewer writes it: the header of the log comes first."""
     def quoted(values):
         return ','.join(str(v) if isinstance(v, (int, float)) else f'"{v}"' for v in values)
 
@@ -192,7 +192,7 @@ def mat5(path, variables, compressed=False):
 
 
 def mat73(path, variables):
-    """As save -v7.3 writes it: HDF5 behind a head of 512 bytes."""
+    """As save -v7.3 writes it: HDF5 after a header of 512 bytes."""
     import h5py
     import numpy
     with h5py.File(path, 'w', userblock_size=512) as file:

@@ -1,4 +1,4 @@
-// Whole logs: recognised, or missing information is named.
+// Whole logs: channels must be recognised, or missing information must be named.
 #include "host/opening/opening.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +39,7 @@ class Opening : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// A motion that is its own derivative's integral: x in mm, v in mm/s, at 1 kHz.
+/// A motion with consistent position and speed: x in mm, v in mm/s, at 1 kHz.
 double x_at(int k) { return 20.0 * std::sin(0.002 * k) + 3.0 * std::sin(0.013 * k); }
 double v_at(int k) { return 1e3 * (0.04 * std::cos(0.002 * k) + 0.039 * std::cos(0.013 * k)); }
 double i_at(int k) { return 0.02 * v_at(k) + (v_at(k) > 0.0 ? 0.5 : -0.5); }
@@ -190,7 +190,7 @@ TEST_F(Opening, ASecondPositionThatIsNoTableIsLeftOut) {
   EXPECT_THAT(channels(opening.files[0])["link position [mm]"].why, HasSubstr("--map x2_mm="));
 }
 
-/// Signals as LinuxCNC's configurations name them, of two joints: an output goes with the axis whose letter it has.
+/// Signals of two joints as in configurations of LinuxCNC. An output belongs to the axis with its letter.
 TEST_F(Opening, HalsamplerOfTwoJointsMakesARecordOfEach) {
   std::string text, hal = "loadrt threads name1=servo period1=1000000\naddf sampler.0 servo\n";
   for (int k = 0; k < kRows; ++k)
@@ -241,7 +241,7 @@ TEST_F(Opening, WithoutTimesThePeriodIsMissing) {
   EXPECT_THAT(opening.files[0].understood.missing.front(), HasSubstr("--period"));
 }
 
-/// Six simulated machines, each with only its four logs: the encoder's step is exact.
+/// Six simulated machines, each with only its four logs. The encoder's step is exact.
 TEST_F(Opening, ControllerLogs) {
   if (!fs::exists(kShared / "controller-logs")) GTEST_SKIP() << kShared << " is not there";
   for (const char* name : {"worn_screw", "gap_only", "honest_clean", "warm_gear", "vertical_z", "crank"}) {
@@ -265,7 +265,7 @@ TEST_F(Opening, ControllerLogs) {
   }
 }
 
-/// Public logs hold no drive in full: each opens, and says what is missing.
+/// No public log contains all properties of a drive. Each must open and name the missing information.
 TEST_F(Opening, ForeignLogsSayWhatIsMissing) {
   if (!fs::exists(kShared / "foreign-logs")) GTEST_SKIP() << kShared << " is not there";
   std::size_t seen = 0;

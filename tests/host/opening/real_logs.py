@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Logs that real controllers wrote, opened by the program without a map: real_logs.py AXISTOOL DATA
+"""Logs of real controllers, opened by the program without a map: real_logs.py AXISTOOL DATA
 
-Prints of each file: channels that it holds, taken and asked about, taken without a question and right, wrong. Right is what
-the files' sources say (the README and the converter beside each): stamps in seconds or in milliseconds, and speeds in rpm.
-Nothing else may be taken without a question; a file of which nothing is taken must say what is missing.
+Prints for each file the number of channels in it, of those taken with a question, of those taken correctly without a
+question, and of wrong ones. The sources of the files (the README and the converter beside each) determine what is
+correct: stamps in seconds or in milliseconds, and speeds in rpm. Nothing else may be taken without a question. If no
+channel of a file is taken, the program must name the missing information.
 """
 import json
 import math
@@ -28,7 +29,7 @@ def logs(data):
 
 
 def truth(path):
-    """Factor of each quantity that needs no question."""
+    """The factor of each quantity that needs no question."""
     name = str(path)
     known = {'t_s': 1e-3 if any(part in name for part in IN_MS) else 1.0}
     if any(part in name for part in IN_RPM):

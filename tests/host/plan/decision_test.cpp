@@ -1,4 +1,4 @@
-// Odds of a run where no rival is the whole truth.
+// Odds of a run if no rival is the whole truth.
 #include "host/plan/decision.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ host::RecordSet with_floors_times(double factor, host::RecordSet set) {
   return set;
 }
 
-/// Catches odds that treat a rival as the whole truth: if even the best leaves more than the noise floors, half the
-/// floors, and so four times the chi^2, is no more evidence.
+/// Catches odds that treat a rival as the whole truth. If even the best rival leaves more than the noise floors, then
+/// half the noise floors, and so four times the chi^2, are not more evidence.
 TEST(Decision, DoesNotTakeForEvidenceWhatNoRivalExplains) {
   const PlanTrial trial = public_trial(std::filesystem::path(AXIS_TEST_DATA) / "drive-cases/single/case-06");
   const std::vector<const host::Record*> training{&trial.training.front()};

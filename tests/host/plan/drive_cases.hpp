@@ -1,4 +1,4 @@
-// The plants of the public cases, rebuilt with IndependentDrive from their truth files.
+// The plants of the public cases, made with IndependentDrive from their truth files.
 #pragma once
 
 #include <fstream>
@@ -49,7 +49,7 @@ inline void put_data_sheet(IndependentDrive& drive, const sim::DataSheet& data) 
   drive.tach_variance = data.tach_noise_variance.value_or(0.0);
 }
 
-/// The commands of a record, given to the drive in open loop.
+/// Applies the commands of a record to the drive in open loop.
 inline host::Record replayed(IndependentDrive drive, const host::Record& record) {
   host::Record own = record;
   own.path = "replayed " + record.path;

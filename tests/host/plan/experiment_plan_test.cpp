@@ -1,5 +1,5 @@
-// Plans on independently coded machines: a run that separates explanations decides correctly; otherwise a manual test
-// is named.
+// Plans on independently coded machines. A run that separates explanations must decide correctly; otherwise a manual
+// test must be named.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ std::filesystem::path shipped(const char* name) {
   return std::filesystem::path(AXIS_TEST_DATA) / "drive-cases/single" / name;
 }
 
-/// Catches rivals that are not re-fitted, truth and rival exchanged, odds that no run bears out, a run that leaves its
-/// box.
+/// Catches rivals that are not refitted, an exchange of truth and rival, odds that the run does not confirm, and a run
+/// that leaves its box.
 void expect_decided(const PlanTrial& trial) {
   const TrialOutcome outcome = carried_out(trial);
   EXPECT_TRUE(outcome.completed) << trial.name << " left its box";
@@ -41,7 +41,7 @@ TEST(ExperimentPlan, TellsADelayFromALag) { expect_decided(public_trial(shipped(
 
 TEST(ExperimentPlan, LeavesToHandsWhatNoMotionSeparates) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // Without static friction a constant torque, friction by direction and an offset are one and the same.
+  // Without static friction, a constant torque, friction by direction and an offset cannot be told apart.
   const TrialOutcome outcome = carried_out(with_level(public_trial(shipped("case-06")), "constant_torque", 0.15));
   EXPECT_FALSE(outcome.plan.separable);
   EXPECT_TRUE(outcome.plan.run.pieces.empty());

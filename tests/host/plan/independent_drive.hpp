@@ -1,5 +1,5 @@
-// A feed drive that shares no code with sim/: plain steps of 10 us, one equation after the other, and a board's
-// connectors in front of it. Parameters are named as in the public cases' truth files.
+// A feed drive that shares no code with sim/: explicit steps of 10 us, one equation after the other, with the
+// connectors of a board. Parameters have the names in the truth files of the public cases.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "hal/axis_hal.hpp"
 #include "hal/limit_inputs.hpp"
 
-/// Nm, rad, s, mm, V. What is 0 is not there.
+/// Units: Nm, rad, s, mm, V. An effect with the value 0 is absent.
 struct IndependentDrive {
   // The data sheet.
   double torque_per_volt = 0.0, lead = 1.0, dac_step = 0.0, dac_limit = 10.0, encoder_step = 0.0, tach_variance = 0.0;
@@ -20,7 +20,7 @@ struct IndependentDrive {
   double J = 0.0, B = 0.0, coulomb_positive = 0.0, coulomb_negative = 0.0;  ///< both >= 0
   double stribeck_ratio = 1.0, stribeck_speed = 0.0;
   // Effects.
-  double load = 0.0;                                        ///< a constant torque against the motor
+  double load = 0.0;                                        ///< constant torque against the motor
   double dac_offset = 0.0, dead_zone = 0.0, delay_s = 0.0;  ///< of the converter
   double current_bandwidth_Hz = 0.0;
   double sigma0 = 0.0, sigma1 = 0.0;                           ///< bristles
@@ -73,7 +73,7 @@ struct IndependentDrive {
     return coulomb * (1.0 + (stribeck_ratio - 1.0) * std::exp(-std::abs(speed) / stribeck_speed));
   }
 
-  /// One mass under `torque`; friction may hold it, and never turns it round within a step.
+  /// One mass under `torque`. Friction may hold it, but never reverses it within a step.
   void rub(double& speed, double inertia, double torque, double transmitted, double share) const {
     const double extra = friction_per_torque * std::abs(transmitted);
     if (speed == 0.0) {
@@ -97,7 +97,7 @@ struct IndependentDrive {
       two_masses(torque, motor);
     } else if (sigma0 > 0.0) {
       const double g = level(speed_, speed_ > 0.0);
-      // Bristles damp creep alone; with this fading the public case's own record comes out to its noise.
+      // Bristles damp only creep. With this decay, the record of the public case is reproduced to its noise.
       const double fading = std::exp(-speed_ * speed_);  // over 1 rad/s
       const double bend_rate = speed_ - sigma0 * std::abs(speed_) / g * bend_;
       speed_ += (torque - sigma0 * bend_ - sigma1 * fading * bend_rate - B * speed_) / J * kStep;
@@ -116,7 +116,7 @@ struct IndependentDrive {
     double spring = 0.0;
     if (gap_mm <= 0.0 || beyond != 0.0) {
       spring = reduced * omega * omega * beyond + 2.0 * damping * reduced * omega * (speed_ - load_speed_);
-      if (gap_mm > 0.0 && spring * beyond < 0.0) spring = 0.0;  // contact only pushes
+      if (gap_mm > 0.0 && spring * beyond < 0.0) spring = 0.0;  // a contact only pushes
     }
     speed_ += (torque - spring) / motor_J * kStep;
     rub(load_speed_, load_J, spring, transmitted, 1.0);
@@ -134,7 +134,7 @@ struct IndependentDrive {
 /// Satisfies firmware::SupervisedHal.
 class IndependentAxis {
  public:
-  /// `tachometer_step`: rad/s a code of the board's converter.
+  /// `tachometer_step`: rad/s per code of the board's converter.
   IndependentAxis(IndependentDrive& drive, double tachometer_step)
       : encoder_{drive}, tachometer_{drive, tachometer_step}, dac_{drive}, enable_{drive} {
     enable_.set(false);

@@ -1,5 +1,5 @@
-// Plans, runs and decides on machines of independent code, and prints the table: the public cases of a group that
-// motion or a hand must split, and the same machines with another member of the group in them.
+// Plans, runs and decides on machines of independent code, and prints the table: the public cases of each group that a
+// motion or a manual test must separate, and the same machines with another member of the group.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,8 +30,8 @@ std::vector<PlanTrial> trials_of(const std::filesystem::path& folder, const std:
   return trials;
 }
 
-/// RMS between the speeds of the case's own record and of the same commands here, over what two noises leave: about 1
-/// where this plant is that one.
+/// RMS difference between the speeds in the record of the case and for the same commands here, relative to that of two
+/// noises. It is about 1 if this plant equals that of the case.
 double likeness(const PlanTrial& trial) {
   const host::Record &own = trial.training.front(), again = replayed(trial.drive, own);
   double square = 0.0;
@@ -39,10 +39,10 @@ double likeness(const PlanTrial& trial) {
   return std::sqrt(square / static_cast<double>(own.size()) / (2.0 * trial.drive.tach_variance));
 }
 
-constexpr double kMostOfJogs = 1.0 / 3.0;  // that a planned run may record
+constexpr double kMostOfJogs = 1.0 / 3.0;  // largest part of the jogs' duration for a planned run
 
-/// A line a pair that holds the truth; false where a separable pair came out wrong, with odds beyond a factor of three,
-/// or by more recording than a third of the fixed jogs.
+/// Prints a line for each pair that contains the truth. Returns false if a separable pair was decided wrongly, if the
+/// odds are wrong by more than a factor of three, or if the run took more than a third of the time of the fixed jogs.
 bool print(const PlanTrial& trial, const TrialOutcome& outcome) {
   const double share = outcome.recorded_s / trial.jogs_s;
   bool good = (!outcome.plan.separable || outcome.completed) && share <= kMostOfJogs;

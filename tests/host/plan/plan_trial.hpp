@@ -24,7 +24,7 @@ struct PlanTrial {
   sim::DriveDescription model;
   std::vector<host::Record> training;
   IndependentDrive drive;
-  double jogs_s = 0.0;  ///< what the case's fixed jogs take
+  double jogs_s = 0.0;  ///< duration of the fixed jogs of the case
 };
 
 /// Result for one pair of the group.
@@ -32,7 +32,7 @@ struct PairOutcome {
   std::string a, b;
   bool separable = false, by_hand = false;
   double expected = 1.0, came = 1.0;
-  bool right = false;  ///< the true one won; meaningless where neither is true
+  bool right = false;  ///< the true one won; meaningless if neither is true
 };
 
 struct TrialOutcome {
@@ -40,13 +40,13 @@ struct TrialOutcome {
   bool completed = false;
   double recorded_s = 0.0, computed_s = 0.0;
   std::string best;
-  std::vector<PairOutcome> pairs;  ///< those that hold the truth
+  std::vector<PairOutcome> pairs;  ///< pairs that contain the truth
   double error = 0.0;
 };
 
 inline const host::ExcitationLimits kTrialBox{80.0, 200.0, 4.0, 10.0};
 
-/// A case of the public folder; its first record is the one that a new machine gives.
+/// A case of the public folder. Its first record is that of a new machine.
 inline PlanTrial public_trial(const std::filesystem::path& folder) {
   PlanTrial trial;
   const auto truth = nlohmann::json::parse(std::ifstream(folder / "truth.json"));
@@ -65,7 +65,7 @@ inline PlanTrial public_trial(const std::filesystem::path& folder) {
   return trial;
 }
 
-/// The same machine with another member of the group in it, and the first record that it would have made.
+/// The same machine with another member of the group, and the first record that it would have given.
 inline PlanTrial with_other_truth(PlanTrial trial, const std::string& name, const std::string& truth,
                                   const IndependentDrive& drive) {
   trial.name = name;
@@ -97,7 +97,7 @@ inline PlanTrial with_level(PlanTrial trial, const std::string& truth, double sh
   return with_other_truth(trial, trial.name + " " + truth.substr(0, 8), truth, drive);
 }
 
-/// With a delay of so many seconds, or a current loop of so many hertz.
+/// The machine with a delay (s) or a current loop (Hz).
 inline PlanTrial with_delay(const PlanTrial& trial, double delay_s) {
   IndependentDrive drive = trial.drive;
   drive.delay_s = delay_s;

@@ -56,7 +56,7 @@ TEST(RunPlan, NamesWhatIsWrongWithAFile) {
   EXPECT_THAT(complaint(with("[box]", "bax = 1\n[box]")), HasSubstr("bax"));
 }
 
-/// The window of a piece that begins off the middle is the remaining range on both sides.
+/// The window of a piece that does not begin in the middle is the remaining range on both sides.
 TEST(RunPlan, KeepsAPieceWithinTheBoxOfTheWholeRun) {
   host::ExcitationScale scale;
   scale.encoder_resolution = 0.001;
@@ -70,11 +70,11 @@ TEST(RunPlan, KeepsAPieceWithinTheBoxOfTheWholeRun) {
   EXPECT_THROW(host::design_piece(run.pieces[0], run.box, 20.5, scale), host::Failure);
 }
 
-/// Error of a rival refitted as far as the training records allow: by hand, for one parameter.
+/// Error of a rival that is refitted as far as the training records allow; computed by hand for one parameter.
 TEST(Information, IsWhatIsLeftAfterTheRivalHasBent) {
   const host::Information known{Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::VectorXd::Zero(1), 0.0};
   host::Information seen{Eigen::MatrixXd::Constant(1, 1, 1.0), Eigen::VectorXd::Constant(1, -6.0), 36.0};
-  seen += known;  // (6 - d)^2 + 3 d^2 is least at d = 1.5: 27
+  seen += known;  // the minimum of (6 - d)^2 + 3 d^2 is 27, at d = 1.5
   EXPECT_NEAR(seen.least(), 27.0, 0.1);
 }
 

@@ -1,4 +1,4 @@
-// Benefit of a scale on the table for a planned run: it separates a gap from a spring, which the motor hardly does.
+// Benefit of a scale on the table for a planned run: it separates a gap from a spring, which the motor hardly shows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class TableInformation : public testing::Test {
     return made;
   }
 
-  /// A small gap with a stiff contact, and a spring with the same deflection under the table's friction.
+  /// A small gap with a stiff contact, and a spring with the same deflection due to the table's friction.
   const std::vector<host::Rival> rivals_ = {
       rival("backlash", {{"gap", 0.01}, {"load_fraction", 0.2}, {"resonance", 200.0}, {"damping_ratio", 0.1}}),
       rival("compliance", {{"load_fraction", 0.2}, {"resonance", 80.0}, {"damping_ratio", 0.1}})};
@@ -49,8 +49,9 @@ class TableInformation : public testing::Test {
   }
 };
 
-/// Catches a table that is compared with the motor's prediction, and an offset of the scale that counts as an error. A
-/// window restarts from a motion that is known to a step of the motor's encoder, five of the scale's: dispersion.
+/// Catches a table that is compared with the prediction for the motor, and an offset of the scale that counts as an
+/// error. At the restart of a window the motion is known to one step of the motor's encoder, which is five steps of the
+/// scale: dispersion.
 TEST_F(TableInformation, TellsTheTruthFromItsRivalByOneRun) {
   const host::Record record = run(piece_of("reversals"), 0, 3);
   ASSERT_EQ(record.x2.size(), record.size());
@@ -71,7 +72,7 @@ TEST_F(TableInformation, IsEmptyWithoutAScale) {
   EXPECT_EQ(host::information_of_table(rivals_[0].model, set).slope.size(), 0);
 }
 
-/// Catches a plan that evaluates a run by the motor alone, and odds of a decision that ignore the table.
+/// Catches a plan that evaluates a run only by the motor, and odds of a decision that ignore the table.
 TEST_F(TableInformation, RaisesTheOddsOfAPlanAndOfItsDecision) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   for (const std::size_t truth : {0u, 1u}) {

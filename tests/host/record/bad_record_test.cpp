@@ -1,4 +1,4 @@
-// One test for each possible fault of a record: the message names file, line, column and remedy.
+// One test for each possible fault of a record. The message must contain file, line, column and remedy.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Rows of a record in which the axis swings to and fro: u in V, x in mm, w in rad/s, 1 kHz, lead 2 mm/rad.
+/// Rows of a record in which the axis moves back and forth: u in V, x in mm, w in rad/s, 1 kHz, lead 2 mm/rad.
 constexpr double kLead = 2.0;
 struct Row {
   double t_s, u_V, x_mm, w_rad_s;
@@ -45,7 +45,7 @@ std::string good_text(int count = 1000) {
 
 class BadRecord : public testing::Test {
  protected:
-  /// The message when `text` is read from a file; the exit code must be that of a bad input file.
+  /// The message for a file with `text`. The exit code must be that of a bad input file.
   std::string message_of(const std::string& text, const std::function<void(host::Record&)>& then = {}) {
     const std::string path = folder.write("measured.csv", text);
     try {
@@ -221,20 +221,20 @@ TEST_F(BadRecord, NoCommandWhileTheAxisSpeedsUp) {
 
 TEST_F(BadRecord, ConstantChannelsThatAreLegal) {
   const auto noise = [](int k) { return 0.1 * std::sin(1e4 * k * k); };
-  // Standstill, to measure noise.
+  // Standstill, for a measurement of noise.
   EXPECT_EQ(message_of(with_columns([&](int k, Row& r) { r = {r.t_s, 0.0, 0.0, noise(k)}; })), "no failure");
-  // The axis never breaks away under an alternating command.
+  // The axis never breaks away, although the command alternates.
   EXPECT_EQ(message_of(with_columns([&](int k, Row& r) {
               r = {r.t_s, k / 100 % 2 ? 1.0 : -1.0, 0.0, noise(k)};
             })),
             "no failure");
-  // Coast-down: no command, and the speed falls.
+  // Coast-down: no command, and the speed decreases.
   EXPECT_EQ(message_of(with_columns([](int k, Row& r) {
               const double w = 30.0 * std::exp(-0.005 * k);
               r = {r.t_s, 0.0, std::round(kLead * 6.0 * (1.0 - std::exp(-0.005 * k)) * 1000.0) / 1000.0, w};
             })),
             "no failure");
-  // Step response: a constant command from rest.
+  // Step response: a constant command, starting at rest.
   EXPECT_EQ(message_of(with_columns([](int k, Row& r) {
               const double a = std::exp(-0.005 * k);
               r = {r.t_s, 2.0, std::round(kLead * (0.03 * k - 6.0 * (1.0 - a)) * 1000.0) / 1000.0, 30.0 * (1.0 - a)};
@@ -279,7 +279,7 @@ TEST_F(BadRecord, UnitsAgainstTheDataSheet) {
   EXPECT_EQ(message_of(position_only(1.0), check), "no failure");
   EXPECT_THAT(message_of(position_only(0.001), check), AllOf(HasSubstr("line 4, column x_mm"), HasSubstr("encoder")));
   EXPECT_THAT(message_of(position_only(1000.0), check), AllOf(HasSubstr("column x_mm"), HasSubstr("smaller unit")));
-  // Hundreds of counts a row, but not always as many.
+  // Hundreds of counts per row, but not always the same number.
   const std::string steady = std::string(kHeader) + "t_s,u_V,x_mm\n" + rows_of(1000, [](int k, Row r) {
                                return fmt::format("{},{},{:.3f}", r.t_s, r.u_V, 0.7213 * k);
                              });
@@ -293,7 +293,7 @@ TEST_F(BadRecord, DriveOfTheOtherKind) {
               AllOf(HasSubstr("line 4, column w_rad_s"), HasSubstr("model is of a linear one"), HasSubstr("v_m_s")));
 }
 
-/// The axis with its table's position, as `table` reads it.
+/// The axis with the position of its table, as `table` converts it.
 std::string with_table(const std::function<double(double x_mm)>& table, const char* column = "x2_mm") {
   return std::string(kHeader) + "t_s,u_V,x_mm," + column + "\n" +
          rows_of(1000, [&](int, Row r) { return fmt::format("{},{},{},{}", r.t_s, r.u_V, r.x_mm, table(r.x_mm)); });

@@ -44,7 +44,7 @@ TEST(CutRecord, KeepsTheRowsBetweenTheTimesAndTheirStamps) {
   EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "both cuts are told";
 }
 
-/// Messages recommend cutting a record at a fault, so the fault must not prevent the cut.
+/// Messages recommend to cut a record at a fault, so the fault must not prevent the cut.
 TEST(CutRecord, WhatIsCutOffNeedNotBeARecord) {
   std::string text = host::format_record(sample());
   const std::size_t at = text.find("\n0.3,") + 1;
@@ -85,7 +85,7 @@ TEST(ShiftChannel, PartsOfASampleLieOnStraightLines) {
   EXPECT_THAT(shifted.header.at("shifted"), testing::AllOf(HasSubstr("w_rad_s by +0.0004 s"), HasSubstr("lines")));
 }
 
-/// A command is held: half a sample later, the step between two rows becomes a row of their mean.
+/// A command is held. Shifted by half a sample, a step between two rows becomes a row with their mean.
 TEST(ShiftChannel, AHeldCommandKeepsItsMean) {
   const host::Record shifted = host::shift_channel(sample(), "u_V", 0.0005);
   const auto row = static_cast<std::size_t>(std::lround((0.05 - shifted.t_s.front()) * 1000.0));

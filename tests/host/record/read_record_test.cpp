@@ -1,4 +1,4 @@
-// Reading of records: units, kinds of drive, further columns, and writing without loss.
+// Reading of records: units, kinds of drive, additional columns, and writing without loss.
 #include "host/record/read_record.hpp"
 
 #include <fmt/format.h>
@@ -112,7 +112,7 @@ TEST(ReadRecord, PeriodsOfPicosecondsAreNotRoundedAway) {
 }
 
 TEST(ReadRecord, StampsRoundedToTheirLastDigitAreEvenlySpaced) {
-  // 30 kHz with stamps in microseconds: steps of 33 and 34 us.
+  // 30 kHz with stamps in microseconds: the steps are 33 and 34 us.
   EXPECT_NEAR(host::parse_record(record_text("t_s,u_V,x_mm", "1", 1.0 / 30000.0), "r.csv").sample_period_s,
               1.0 / 30000.0, 1e-8);
 }
@@ -139,7 +139,7 @@ TEST(WriteRecord, RoundTripsToTheLastBit) {
   for (const sim::DriveKind kind : {sim::DriveKind::rotary, sim::DriveKind::linear}) {
     record.kind = kind;
     if (kind == sim::DriveKind::linear)
-      record.x.clear(), record.x2.clear();  // its speed is not that of the position above
+      record.x.clear(), record.x2.clear();  // its speed does not match the position above
     const std::string path = folder.path("record.csv");
     host::write_record(record, path);
     const host::Record again = host::read_record(path);
@@ -176,7 +176,7 @@ TEST(WriteRecord, SaysWhyItCannot) {
 TEST(ReadRecord, MeasuredDriveCasesPassAllChecks) {
   const std::filesystem::path cases = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases";
   if (!std::filesystem::exists(cases)) GTEST_SKIP() << "no records in " << cases;
-  // The lead and the encoder of the paper's drives, 10 mm/rev and 2^-9 * 1.25 mm, which all cases share.
+  // The lead and the encoder of the paper's drives, 10 mm/rev and 2^-9 * 1.25 mm, which all cases have.
   sim::DataSheet sheet;
   sheet.lead = 1.5915494309189535;
   sheet.encoder_resolution = 0.00244140625;

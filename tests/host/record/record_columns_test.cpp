@@ -1,4 +1,4 @@
-// Records of columns in memory against the same numbers in a file, which the reader takes.
+// Records made of columns in memory, compared with the same numbers read from a file.
 #include "host/record/record_columns.hpp"
 
 #include <gmock/gmock.h>
@@ -18,8 +18,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using testing::HasSubstr;
 
-/// At 3 kHz with stamps of a hundredth of a millisecond, as some loggers round them: even only as far as their digits
-/// go.
+/// 3 kHz with stamps rounded to a hundredth of a millisecond, as some loggers do. The rows are even only within these
+/// digits.
 RecordColumns moving() {
   RecordColumns given{{{"t_s", {}}, {"u_V", {}}, {"x_m", {}}, {"v_mm_s", {}}, {"note", {}}},
                       {{"drive", "stage"}, {"sample_period_s", "0.00033333"}}};

@@ -1,4 +1,4 @@
-// Opens a report in headless Chromium and uses it as a reader would: with the mouse.
+// Opens a report in headless Chromium and uses it with the mouse, as a reader does.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace host {
 namespace {
 
-/// Runs after the report's own scripts: checks pixels, drags, checks the ranges, and writes its results into the page.
+/// Runs after the scripts of the report: checks pixels, drags, checks the ranges, and writes the results into the page.
 constexpr const char* visitor_script = R"(
 <pre id="seen"></pre><script>
 (async function () {
@@ -91,7 +91,7 @@ std::string content_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Undoes encodeURIComponent, with which the page hands its findings over unharmed by HTML's own escapes.
+/// Reverses encodeURIComponent, by which the page protects its results from the escapes of HTML.
 std::string decoded(const std::string& text) {
   std::string plain;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -118,7 +118,7 @@ class Browser : public testing::Test {
     if (!folder_.empty()) std::filesystem::remove_all(folder_);
   }
 
-  /// The page after `visitor_script`; the browser's messages are in `log_`.
+  /// The page after `visitor_script`; the messages of the browser are in `log_`.
   std::string visit(std::string html, const char* script = visitor_script, const char* settings = "") {
     html.replace(html.rfind("</body>"), 7, script);
     std::ofstream(folder_ / "report.html", std::ios::binary) << html;
@@ -161,7 +161,7 @@ TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
     for (const nlohmann::json& pixels : chart) EXPECT_GT(pixels.get<int>(), 30) << seen["pixels"];
   }
 
-  // Drawn with fewer rows than there are samples; zooming in brings out every sample.
+  // Drawn with fewer rows than samples. Zooming in shows every sample.
   EXPECT_LT(seen["rowsAtFirst"].get<int>(), 10'000);
   const double from_s = seen["zoomed"][0][0];
   const double to_s = seen["zoomed"][0][1];
@@ -181,7 +181,7 @@ TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
 }
 
 TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
-  const DriveCase shipped("pairs/case-00");  // validated on 3 s of motion
+  const DriveCase shipped("pairs/case-00");  // validated with 3 s of motion
   std::vector<const Record*> train, validate;
   for (const Record& record : shipped.train) train.push_back(&record);
   for (const Record& record : shipped.validate) validate.push_back(&record);
@@ -193,12 +193,12 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
   const nlohmann::json seen = seen_in(page);
   ASSERT_TRUE(seen.is_object()) << "the page's scripts did not run to their end\n" << log_;
-  // Residual against speed, period, travel, acceleration and time; the tachometer's against speed and acceleration;
+  // Residual over speed, period, travel, acceleration and time; that of the tachometer over speed and acceleration;
   // speed, its error, position error.
   EXPECT_EQ(seen["charts"], 10);
   ASSERT_EQ(seen["mapColours"].size(), 1U) << "over position and speed";
   EXPECT_GT(seen["mapColours"][0].get<int>(), 50);
-  // The last curve lies on top: of a tachometer that no effect concerns, both are the same.
+  // The last curve is on top. For a tachometer that no effect concerns, both curves are equal.
   for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
 }
 
@@ -227,7 +227,7 @@ TEST_F(Browser, ADarkScreenGetsADarkPageThatTellsWhatItShows) {
   EXPECT_EQ(seen["spoken"], "speed [rad/s] over time: measured from -2 to 3");
 }
 
-/// The units of x and y a pixel: as drawn, zoomed by a drag along x, reset, and in a narrower place.
+/// Scales of x and y in units per pixel: as drawn, zoomed by a drag along x, reset, and in a narrower frame.
 constexpr const char* plane_script = R"(
 <pre id="seen"></pre><script>
 (async function () {

@@ -1,4 +1,4 @@
-// The catalogue as pages and as JSON.
+// The catalogue as text pages and as JSON.
 #include "host/report/effect_pages.hpp"
 
 #include <gmock/gmock.h>

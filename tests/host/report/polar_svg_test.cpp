@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(PolarPlot, SaysHowMuchItMagnifiesAndDrawsToThatScale) {
-  // Rings of 22 units about a circle of 160: the largest deviation, 12 um, takes three rings of 5 um.
+  // Rings of 22 units about a circle of 160: the largest deviation, 12 um, covers three rings of 5 um.
   const PolarPlot plot{
       "A <circle>", "", 35.0, {{"spoilt", SeriesRole::before, {0.0, 1.5707963267948966}, {10.0, -12.0}}}};
   const std::string svg = html::polar_plot(plot);

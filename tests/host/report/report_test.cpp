@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What stands between the markup and the scripts' sources.
+/// The data between the markup and the sources of the scripts.
 nlohmann::json plots_of(const std::string& html) {
   const std::string mark = "id=\"plots\">";
   const std::size_t begin = html.find(mark) + mark.size();

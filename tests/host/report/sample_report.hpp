@@ -1,4 +1,4 @@
-// A report with every kind of block, from closed forms.
+// A report with every kind of block, with data in closed form.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace host::sample {
 
 inline constexpr const char* hostile_text = "</script><script>document.title='taken over'</script><!-- \" ' & \xff";
 
-/// A sine of 2 Hz and what is left of it after a prediction 10 % too small, sampled at 1 kHz.
+/// A sine of 2 Hz and its residual after a prediction that is 10 % too small, sampled at 1 kHz.
 inline TimePlot time_plot(std::size_t samples) {
   TimePlot plot;
   plot.title = "train.csv";

@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// A terminal of 80 columns, with what was written to it.
+/// A terminal of 80 columns that records its output.
 class PseudoTerminal {
  public:
   PseudoTerminal() {
@@ -70,7 +70,8 @@ TEST(Terminal, ColourOnlyOnATerminalThatWantsIt) {
 
 TEST(Terminal, BarsAreScaledAndCarryTheReference) {
   const std::string text = terminal_bars(sample::ladder(), {false, false, 60});
-  // 60 columns less labels (9), names (12), values (17) and blanks (2) leave 20 cells; the floor of 1 is a tenth of 10.
+  // Of 60 columns, labels (9), names (12), values (17) and blanks (2) leave 20 cells; the noise floor of 1 is a tenth
+  // of 10.
   EXPECT_EQ(text,
             "Ladder of errors\n"
             "as given   training    ██|█████████████     8.00 × floor\n"

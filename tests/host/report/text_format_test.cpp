@@ -83,7 +83,7 @@ TEST(BinnedCurve, LeavesOutThinStretchesAndSurvivesNothing) {
 }
 
 TEST(BinnedCurve, AGapStaysAGapAndThinBinsJoinTheirNeighbours) {
-  // Dense from 0 to 9, thin from 9 to 12, nothing until 90, dense from 90 to 100: bins of one unit.
+  // Dense from 0 to 9, sparse from 9 to 12, nothing until 90, dense from 90 to 100: bins of one unit.
   std::vector<double> x, y;
   for (int k = 0; k < 90; ++k) x.push_back(0.1 * k);
   for (const double thin : {9.5, 10.5, 11.5}) x.push_back(thin);
@@ -108,7 +108,7 @@ TEST(BinnedCurve, AGapStaysAGapAndThinBinsJoinTheirNeighbours) {
 }
 
 TEST(BinnedCurve, DoesNotAliasWithAKnownPeriod) {
-  // A ripple every 5 mm over 320 mm, in 160 bins of 2 mm: their means would beat between +-0.9.
+  // A ripple every 5 mm over 320 mm, in 160 bins of 2 mm. Their means would beat between +-0.9.
   constexpr double kPeriod = 5.0;
   std::vector<double> x, y;
   for (int k = 0; k < 32'000; ++k) {

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Machines with a scale on the table that the program knows nothing of (table_machine.py): up to three of backlash,
-compliance, pitch error, cyclic errors of scale and motor encoder, and thermal growth, or none. Seeds are printed; with an
-argument as many machines are tried, and each is diagnosed with its scale and without. Without the argument two machines
-are tried, one of which has a gap and a spring that lose as much at a reversal as other pairs of them; and three are
-diagnosed without a scale: one whose torque alone speaks for a gap, which its motion denies; one whose spring bends by
-the friction of one side, as if there were a gap; and one whose torque takes its rigid gap for a spring."""
+"""Machines with a scale on the table that are unknown to the program (table_machine.py). Each has up to three of
+backlash, compliance, pitch error, cyclic errors of scale and motor encoder, and thermal growth, or none. Seeds are
+printed. The argument is the number of machines to try; each is diagnosed with and without its scale. Without the
+argument, two machines are tried. One of them has a gap and a spring, and other pairs of gap and spring have the same
+lost motion. Three more are diagnosed without a scale: one for which the torque alone indicates a gap, but the motion
+excludes it; one with a spring that the friction of one side deflects, which looks like a gap; and one with a rigid gap
+that looks like a spring in the torque."""
 
 import json
 import math
@@ -23,7 +24,7 @@ WITHOUT_SCALE = (105, 425, 581)
 
 
 def axistool(*arguments: object) -> dict:
-    """What it prints as JSON; fails where it says that it cannot."""
+    """The JSON output of the program; fails if the program reports an error."""
     done = subprocess.run([AXISTOOL, *map(str, arguments), "--json", "-"], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise AssertionError(f"axistool {' '.join(map(str, arguments))}: exit {done.returncode}\n{done.stderr}")
@@ -31,7 +32,7 @@ def axistool(*arguments: object) -> dict:
 
 
 def names_in(table: dict) -> "set[str]":
-    """The causes as the machine calls them; what is too small to be named does not count."""
+    """The effects found, by the names of the machine, without those that are too small to be named."""
     found = set()
     for effect in table["found"]:
         if not effect["worth_naming"]:
@@ -61,13 +62,13 @@ def faults_of_sizes(machine: Machine, table: dict) -> "list[str]":
             if off > 1.0:
                 faults.append(f"pitch error off by {off:.2f} um")
         if effect["kinds"] == ["compliance"] and "compliance" in machine.causes:
-            true_um = 1e3 / machine.stiffness / (1e-3 * LEAD)  # a Nm
+            true_um = 1e3 / machine.stiffness / (1e-3 * LEAD)  # per Nm
             print(f"    compliance {sizes['compliance']['value']:.3f}, true {true_um:.3f} um/Nm")
     return faults
 
 
 def write_records(machine: Machine, path: Path) -> Path:
-    """Its sheet, and two records with the scale and without; the model that is identified from them."""
+    """Its data sheet, two records with and without the scale, and the model identified from them."""
     (path / "sheet.toml").write_text(machine.sheet())
     for name, seconds, run in (("train", 20.0, 1), ("judge", 14.0, 2)):
         text = machine.record(seconds, run)
@@ -110,7 +111,7 @@ WITHOUT = (("without", "-motor"),)
 
 
 def diagnosed(machine: Machine, model: Path, path: Path, ways: "tuple" = (("with the scale", ""), *WITHOUT)) -> int:
-    """Names that diagnose gives with the scale and without; counts those that are not there."""
+    """Names that diagnose gives with and without the scale; counts the effects that the machine does not have."""
     true = {cause.split()[0] for cause in machine.causes}
     wrong = 0
     for how, ending in ways:

@@ -1,4 +1,4 @@
-// Readings of a dial gauge: a table in a play, written down here by its formula, and files as people write them.
+// Readings of a dial gauge: a table with play, computed here by a formula, and files as people write them.
 #include "host/scale/dial_readings.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Three steps forward, three back, on a table that loses `lost_um` at a reversal; a gauge of 1 um.
+/// Three steps forward and three back, on a table that loses `lost_um` at a reversal, with a gauge of 1 um.
 std::string dial_file(double lost_um, double lead_um_per_m, unsigned seed, double travel_mm = 0.15) {
   std::mt19937 random(seed);
   std::normal_distribution<double> scatter(0.0, 0.4e-3);

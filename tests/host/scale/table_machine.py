@@ -1,12 +1,12 @@
-"""A drive with a table behind it, of its own physics: motor and table, with a spring or a gap or both between them, Coulomb
-friction on either side, a screw with pitch errors, a motor encoder and a scale with errors of their own, growth by heat.
-Integrated here, in N, kg, mm and s; nothing of it is the program's."""
+"""A drive with a table, with independent physics: motor and table connected by a spring, a gap or both, Coulomb
+friction on both sides, a screw with pitch errors, a motor encoder and a scale with errors of their own, and thermal
+growth. Integrated here, in N, kg, mm and s, without code of the program."""
 
 import math
 import random
 
 PERIOD = 1e-3  # s, of control and log
-TURN = 10.0  # mm a motor turn
+TURN = 10.0  # mm per motor turn
 LEAD = TURN / (2.0 * math.pi)  # mm/rad
 KT = 0.48  # Nm/A
 FORCE_PER_A = KT / (1e-3 * LEAD)  # N
@@ -28,7 +28,7 @@ resolution_mm = RESOLUTION
 
 
 class Machine:
-    """One machine: what is between its motor and its table."""
+    """One machine: the parameters of the connection between motor and table."""
 
     def __init__(self, seed: int, causes: "dict[str, bool] | None" = None) -> None:
         draw = random.Random(seed)
@@ -73,7 +73,7 @@ class Machine:
         return SHEET.replace("RESOLUTION", repr(self.resolution))
 
     def record(self, seconds: float, run: int) -> str:
-        """A record of moves over the travel; `run` tells one motion from another."""
+        """A record of moves over the travel; `run` selects the motion."""
         draw = random.Random(self.draw.random() + run)
         reference = moves(seconds, draw)
         rows = ["# format: axis-record/1", "# drive: x", f"# sample_period_s: {PERIOD}", "t_s,i_A,x_mm,x2_mm"]
@@ -101,7 +101,7 @@ class Machine:
 
 
 def moves(seconds: float, draw: random.Random) -> "list[float]":
-    """From target to target with ramps of speed, at several speeds; first once over the whole travel and back."""
+    """Moves from target to target with speed ramps, at several speeds; the first is over the whole travel and back."""
     path, x = [0.0] * 100, 0.0
     targets = [(-100.0, 150.0), (100.0, 60.0), (-100.0, 60.0)]
     while len(path) < seconds / PERIOD:

@@ -28,13 +28,13 @@ sim::DriveDescription drive() {
   return model;
 }
 
-/// The faster wave brakes harder than the friction of a table does.
+/// The faster wave decelerates more than the friction of a table does.
 struct Motion {
   double fast_mm = 14.0, fast_rad_s = 3.1;
   double at(double t_s) const { return 60.0 * std::sin(0.7 * t_s) + fast_mm * std::sin(fast_rad_s * t_s); }
 };
 
-/// `seed`: of the current's and the scale's noise.
+/// `seed`: of the noise of the current and of the scale.
 host::Record record(const Difference& difference, unsigned seed, const Motion& motor = {}) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise;
@@ -60,7 +60,7 @@ host::TableStudy study(const Difference& training, const Difference& judging, co
   return host::study_table(drive(), {&kept[0], &kept[1]});
 }
 
-/// The table in a gap of this width, mm, from its middle; it stays where it is until it is pushed.
+/// The table in a gap of this width, mm, starting in its middle. It rests until it is pushed.
 Difference gap_of(double gap) {
   return [gap, table = std::optional<double>()](double x, double, double) mutable {
     if (!table) table = x;
@@ -83,7 +83,7 @@ TEST(TableStudy, IsEmptyWithoutASecondPosition) {
   EXPECT_TRUE(host::study_table(drive(), {&plain}).empty());
 }
 
-/// A scale's zero that moves by 3 um a kelvin is told from the table by the data sheet alone.
+/// Only the data sheet separates a scale whose zero moves by 3 um per kelvin from a motion of the table.
 TEST(TableStudy, TakesTheScaleWarmingFromTheSheet) {
   const auto warming = [](unsigned seed) {
     host::Record warmed = record([](double, double, double) { return 0.0; }, seed);
@@ -111,7 +111,7 @@ TEST(TableStudy, MeasuresAGap) {
   EXPECT_LT(found.left_um, 0.2 * found.before_um);
 }
 
-/// The table behind a free gap and a spring, integrated in steps of 20 us: inertia 0.006 kg m^2 and Coulomb friction of
+/// The table on a spring with a free gap, integrated in steps of 20 us: inertia 0.006 kg m^2 and Coulomb friction of
 /// 0.9 Nm at the table, 3 um/Nm, little damping.
 Difference sprung(double gap) {
   struct Table {
@@ -147,7 +147,8 @@ TEST(TableStudy, TellsASpringFromAGap) {
   EXPECT_NEAR(found.effects[0].sizes.back().value, resonance, 0.02 * resonance);
 }
 
-/// Catches a gap that is counted from where the motor turns instead of from where the spring has unwound.
+/// Catches a gap that is measured from the reversal of the motor, and not from the point at which the spring is
+/// relaxed.
 TEST(TableStudy, MeasuresAGapBesideASpring) {
   const Motion softer_than_friction{}, harder{.fast_mm = 10.0, .fast_rad_s = 9.0};
   for (const Motion& motor : {softer_than_friction, harder}) {
@@ -160,7 +161,7 @@ TEST(TableStudy, MeasuresAGapBesideASpring) {
   }
 }
 
-/// Catches rows that reach beyond their record: each sample is a row of its own here.
+/// Catches rows that extend beyond their record; here each sample is a row.
 TEST(TableStudy, ReadsShortRecords) {
   host::Record whole = record(gap_of(0.03), 1);
   for (std::vector<double>* channel : {&whole.t_s, &whole.i_A, &whole.x, &whole.x2}) channel->resize(2001);
@@ -203,8 +204,8 @@ TEST(TableStudy, SaysWhichSensorErrs) {
   EXPECT_EQ(of_motor.effects[0].place, "motor");
 }
 
-/// Catches a search that ends at what a quarter of the rows resolves: here the fastest of them are beyond many periods
-/// of the grating, and only those about the reversals are within a third of one.
+/// Catches a search that ends at the period that a quarter of the rows resolves. Here the fastest rows cover many
+/// periods of the grating, and only those near the reversals cover less than a third of one.
 TEST(TableStudy, FindsAGratingThatOnlySlowMotionResolves) {
   const Difference scale = [](double x, double, double) { return 0.001 * std::sin(2.0 * std::numbers::pi * x / 0.15); };
   const host::TableStudy found = study(scale, scale);
@@ -214,7 +215,8 @@ TEST(TableStudy, FindsAGratingThatOnlySlowMotionResolves) {
   EXPECT_NEAR(found.effects[0].sizes[1].value, 0.15, 0.001);
 }
 
-/// Catches a drift that is taken for a pitch error or a gap, and a stated place of the drift, which no scale can show.
+/// Catches a drift that is taken for a pitch error or a gap, and a stated location of the drift, which no scale can
+/// show.
 TEST(TableStudy, NamesAGrowthAndNotItsPlace) {
   const Difference warming = [first = std::optional<double>()](double, double, double t_s) mutable {
     if (!first) first = t_s;
