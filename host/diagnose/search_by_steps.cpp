@@ -114,22 +114,28 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
   return found;
 }
 
-/// The pair with its first effect replaced by an effect with which it is often confused, if that also helps alone. The
-/// second effect was searched only beside the first.
-std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::vector<Candidate>& singles,
-                                            const PreparedSets& sets) {
+/// The candidate with one of its earlier effects replaced by an effect with which it is often confused, if that also
+/// helps alone. The last effect was searched only beside the earlier ones.
+std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vector<Candidate>& singles,
+                                          const PreparedSets& sets) {
   std::vector<Candidate> found;
-  const std::string &first = pair.kinds.front(), &second = pair.kinds.back();
-  const std::vector<std::string_view>& relatives = sim::find_effect(first)->confused_with;
-  for (const Candidate& single : singles) {
-    const std::string& other = single.kinds.back();
-    if (other == first || other == second || !is_physical(single) ||
-        std::ranges::find(relatives, other) == relatives.end())
-      continue;
-    sim::DriveDescription model = single.model;
-    model.effects.push_back(*pair.model.find(second));
-    found.push_back(judged({other, second}, fit_model(model, sets.training, kWithoutOne).model, sets.base,
-                           sets.training, sets.validation));
+  for (const std::string& kind : std::span(whole.kinds).first(whole.kinds.size() - 1)) {
+    const std::vector<std::string_view>& relatives = sim::find_effect(kind)->confused_with;
+    for (const Candidate& single : singles) {
+      const std::string& other = single.kinds.back();
+      if (std::ranges::find(whole.kinds, other) != whole.kinds.end() || !is_physical(single) ||
+          std::ranges::find(relatives, other) == relatives.end())
+        continue;
+      sim::DriveDescription model = single.model;
+      std::vector<std::string> kinds = {other};
+      for (const std::string& kept : whole.kinds) {
+        if (kept == kind) continue;
+        model.effects.push_back(*whole.model.find(kept));
+        kinds.push_back(kept);
+      }
+      found.push_back(
+          judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training, sets.validation));
+    }
   }
   return found;
 }
@@ -225,7 +231,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   if (pair == found.pairs.end() || !is_physical(*pair)) return found;
   renew(pair->model);
   Candidate best_pair = *pair;
-  std::vector<Candidate> exchanged = with_first_exchanged(best_pair, found.singles, sets);
+  std::vector<Candidate> exchanged = with_one_exchanged(best_pair, found.singles, sets);
   compare_with_springs(exchanged, sets);
   for (const Candidate& other : exchanged)
     if (cost(other) < cost(best_pair)) best_pair = other;
@@ -245,7 +251,9 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   found.triples = search(best_pair.model, best_pair.kinds, 0.8, 1.0);
   const auto triple = std::ranges::find_if(found.triples, is_physical);
   if (triple == found.triples.end()) return found;
-  for (Candidate& shorter : without_what_is_needless(*triple, sets)) found.triples.push_back(std::move(shorter));
+  std::vector<Candidate> beside = without_what_is_needless(*triple, sets);
+  std::ranges::move(with_one_exchanged(*triple, found.singles, sets), std::back_inserter(beside));
+  std::ranges::move(beside, std::back_inserter(found.triples));
   return found;
 }
 
