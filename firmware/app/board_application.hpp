@@ -140,8 +140,7 @@ class BoardApplication {
     return while_stalled(write);
   }
 
-  /// Assigns the staged table to the axis, switches it on or off, and saves it with the parameters. Only while no drive
-  /// is enabled.
+  /// Assigns the staged table to the axis, switches it on or off, saves it with the parameters; no drive is enabled.
   Status finish_table(std::uint32_t crc, bool on) {
     staged_ = active_;
     staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
@@ -294,8 +293,7 @@ class BoardApplication {
     return target_counts > axes_[axis].telemetry().encoder_counts;
   }
 
-  /// Searches for home or, if `here`, accepts the operator's statement that the axis stands there; homing.mode
-  /// determines which is allowed.
+  /// Searches for home or, if `here`, sets the present position to homing.position, as homing.mode allows.
   Status home(std::size_t axis, bool here) {
     if (!is_fitted(axis)) return Status::not_fitted;
     const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);

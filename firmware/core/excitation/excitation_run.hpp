@@ -117,8 +117,8 @@ class ExcitationRun {
       begin(axis.telemetry().encoder_counts);
       phase_ = ExcitationPhase::running;
       if (is_asked_) leave(ExcitationEnd::asked);
-    } else if (axis.state() == SupervisorState::fault || (axis.state() != SupervisorState::starting &&
-                                                          ++waited_ > kLongestOpening)) {  // starting times out itself
+    } else if (axis.state() == SupervisorState::fault ||
+               (axis.state() != SupervisorState::starting && ++waited_ > kLongestOpening)) {  // starting has a limit
       end_ = ExcitationEnd::refused;
       phase_ = ExcitationPhase::done;
     }
