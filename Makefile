@@ -6,8 +6,9 @@ JOBS    ?= $(shell nproc)
 NEED     = @cmake/packages/install.sh
 SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
 
-# Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which is
-# faster; UNITY=OFF, for work on single files, each by itself; a tree stays as it is unless UNITY is given.
+# Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which
+# is faster. UNITY=OFF compiles each separately, for work on single files. Without UNITY an existing tree keeps its
+# setting.
 configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages \
   $(if $(filter $(BUILD) $(CHECKED),$1),$(addprefix -DAXIS_UNITY=,$(or $(UNITY),$(if $(wildcard $1/CMakeCache.txt),,ON)))) $2
 

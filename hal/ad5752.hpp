@@ -68,7 +68,7 @@ class Ad5752 {
   }
 
   /// Reads one register back, the next one at the next call. A difference is read again at once: a disturbance on the
-  /// line disappears, a lost register does not. A state other than sound persists until start().
+  /// line disappears, a lost register does not. Any state except `sound` persists until start().
   void watch() {
     const Reading reading = expected(next_);
     next_ = (next_ + 1) % kReadings;
@@ -93,9 +93,9 @@ class Ad5752 {
   static constexpr std::uint32_t kPowerBoth = (1u << 0) | (1u << 2);                      // table 24: PUA, PUB
   static constexpr std::uint32_t kTooHot = 1u << 5, kOverloaded = (1u << 7) | (1u << 9);  // table 24: TSD, OCA, OCB
   static constexpr std::uint32_t kCode = 0xFFFF;
-  // How long the select line is high between words: twice t6 and twice t17 as remembered, 100 ns and 200 ns. These two
-  // rows of the timing table have not been read again, nor t16, 40 ns, from a clock's rise to the answer's bit: look
-  // them up before the first power-up. A wrong t16 shows in start(), as registers that differ, before an output is on.
+  // Time for which the select line is high between words: twice t6 = 100 ns and twice t17 = 200 ns. These times and
+  // t16, 40 ns from a clock's rise to the answer's bit, are not verified: check them in the timing table before the
+  // first power-up. If t16 is wrong, start() finds different registers before an output is on.
   static constexpr std::uint32_t kHighWriting_ns = 200, kHighReading_ns = 400;
 
   struct Reading {

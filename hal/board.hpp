@@ -21,7 +21,7 @@ namespace hal {
 /// the watchdog that the processor may stop for as long as a sector erase; `end_stall` restores the short time-out.
 /// `restart` restarts the program, and may return before it does. `axis(index)` exists for every index below `kAxes`.
 /// A board whose program can be updated also has `image_flash()`: a Flash of three sectors, the place where programs
-/// run and two slots.
+/// run and two slots that keep images.
 template <typename T>
 concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
   typename T::AxisType;

@@ -1,4 +1,4 @@
-// Emergency-stop input, which acts in hardware, too: software only reads it. And the relay of a delayed stop.
+// Emergency-stop input, which also acts in hardware, and the relay that cuts the power after a delayed stop.
 #pragma once
 
 #include <concepts>

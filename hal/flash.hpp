@@ -16,11 +16,11 @@ enum class FlashResult : std::uint8_t {
   hardware_error,  ///< write protection, programming or erase error; contents undefined
 };
 
-/// Contract: `sector_count()` sectors of `sector_size()` bytes. `read` copies out; `view` shows a whole
-/// sector in its place, which later operations on it change. `program` turns ones into zeros, in
-/// units of `program_size()` bytes, each of which a power cut leaves old, new or unreadable, never its neighbours.
-/// `erase` sets a whole sector to 0xFF; a power cut leaves that sector undefined, never the others. `program` and
-/// `erase` return when the hardware has finished, and stall the bus: never call them while a drive is enabled.
+/// Contract: `sector_count()` sectors of `sector_size()` bytes. `read` copies out; `view` shows a whole sector in
+/// place, so later operations change its contents. `program` turns ones into zeros, in units of `program_size()` bytes.
+/// A power cut leaves the unit old, new or unreadable, and never changes others. `erase` sets a whole sector to 0xFF; a
+/// power cut leaves that sector undefined, and never changes others. `program` and `erase` return when the hardware has
+/// finished, and stall the bus: never call them while a drive is enabled.
 template <typename T>
 concept Flash = requires(T& flash, const T& constant, std::size_t sector, std::size_t offset, std::span<std::byte> out,
                          std::span<const std::byte> in) {

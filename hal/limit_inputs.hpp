@@ -11,8 +11,8 @@ struct LimitState {
   bool home = false;
 };
 
-/// Contract: `read()` samples the inputs at this instant. true means that the switch is actuated or that its wire is
-/// broken (normally closed contacts); the home input is normally open, so there true means actuated only.
+/// Contract: `read()` samples the inputs at this instant. true: the switch is actuated or its wire is broken (normally
+/// closed contacts). The home input is normally open; there true means only actuated.
 template <typename T>
 concept LimitInputs = requires(T& inputs) {
   { inputs.read() } -> std::same_as<LimitState>;

@@ -1,4 +1,4 @@
-// The catalogue of physical effects that a drive can be made of.
+// The catalogue of physical effects of a drive.
 #pragma once
 
 #include <span>

@@ -60,7 +60,7 @@ struct PlainContact {
   void rested(double) const {}
 };
 
-/// Eq. (19) and further friction of a direction over its speed.
+/// Eq. (19) and additional friction that depends on direction and speed.
 struct BentContact : PlainContact<true> {
   const Drive& drive;
 
@@ -73,13 +73,13 @@ struct BentContact : PlainContact<true> {
   }
 };
 
-/// A contact on which further effects act; `motion` holds its state.
+/// A contact with additional effects; `motion` holds its state.
 struct RichContact {
   const Drive& drive;
   DriveMotion& motion;
   double level;      ///< factor on Coulomb and static friction
   double viscosity;  ///< factor on viscous friction
-  double carried;    ///< friction from the transmitted effort
+  double carried;    ///< friction caused by the transmitted torque or force
 
   RichContact(const Drive& of_drive, DriveMotion& of_motion, double t_s, double x, double motor)
       : drive(of_drive),
@@ -100,7 +100,7 @@ struct RichContact {
     return {level * point.effort + carried, remembers ? 0.0 : level * point.slope};
   }
 
-  /// The part of the friction that the fluid causes, not the contact.
+  /// Viscous part of the friction.
   FrictionPoint viscous(int side, double speed) const {
     const double coefficient = viscosity * drive.curves()[static_cast<std::size_t>(side)].viscous;
     return FrictionPoint{coefficient * speed, coefficient} + further_friction(drive, side, speed);

@@ -14,7 +14,7 @@ struct SecondMass {
   double damping_ratio = 0.0;
   double gap = 0.0;            ///< free travel, mm or m
   double load_friction = 1.0;  ///< part of the drive's dry friction that acts on the load's side, 0..1
-  double load_viscous = 1.0;   ///< the same of its viscous friction
+  double load_viscous = 1.0;   ///< part of its viscous friction, 0..1
 };
 
 /// The coupling of the two masses, per rad of deflection (or m).

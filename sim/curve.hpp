@@ -17,8 +17,7 @@ inline constexpr std::string_view kCurveCoordinates[] = {
 /// knot have equal values, and their distance is the period.
 class Curve {
  public:
-  /// Takes the entry's `knot` and `value` parameters. There are equally many of both, and knots ascend with their
-  /// number.
+  /// Takes the entry's `knot` and `value` parameters: equally many of both, with knots in ascending order.
   explicit Curve(const EffectEntry& entry);
 
   double operator()(double q) const;

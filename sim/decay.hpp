@@ -28,9 +28,9 @@ constexpr auto kValues = [] {
 /// terms of the series, whose first missing one is (1/64)^5/120.
 [[gnu::always_inline]] inline double decay(double z) {
   using decay_table::kEnd, decay_table::kPerUnit, decay_table::kValues;
-  if (!(z < kEnd)) return z >= kEnd ? 0.0 : z;  // not a number stays so
+  if (!(z < kEnd)) return z >= kEnd ? 0.0 : z;  // NaN stays NaN
   if (z < 0.0) return std::exp(-z);
-  // Adding 1.5 * 2^52 rounds to a whole number, which then stands in the lowest bits.
+  // Adding 1.5 * 2^52 rounds to a whole number, which is then in the lowest bits.
   constexpr double kRounder = 0x1.8p52;
   const double cells = z * kPerUnit, shifted = cells + kRounder;
   const std::size_t nearest = std::bit_cast<std::uint64_t>(shifted) & 0xfff;

@@ -58,13 +58,13 @@ void Drive::settle() {
 }
 
 double Drive::memory_s() const {
-  // Five time constants leave less than 1 % of what was before; a bristle and a second mass settle within 0.1 s.
+  // After five time constants less than 1 % of the earlier state remains; bristle and second mass settle within 0.1 s.
   constexpr double kTimeConstants = 5.0, kContact_s = 0.1;
   double memory = delay_s;
   for (const double lag_s : {current_lag_s, friction_memory_s, tach_lag_s})
     memory = std::max(memory, kTimeConstants * lag_s);
   if (dwell_gain > 0.0) memory = std::max(memory, kTimeConstants * dwell_time_s);
-  constexpr double kReversals_s = 2.0;  // who has not turned over for so long is far from where friction still rises
+  constexpr double kReversals_s = 2.0;  // after this time without a reversal, friction no longer rises
   if (!friction_after_reversal.empty()) memory = std::max(memory, kReversals_s);
   if (bristles || second_mass) memory = std::max(memory, kContact_s);
   return memory;
@@ -146,7 +146,7 @@ void Drive::note_reversal(DriveMotion& motion, double x, double w) const {
 }
 
 [[gnu::always_inline]] inline int Drive::parts_of(double duration_s, double w) const {
-  // What passes several periods in a sixth of the interval averages out whatever is done.
+  // A ripple with several periods in a sixth of the interval averages out without further parts.
   constexpr double kMostParts = 6.0;
   double wanted = duration_s * parts_per_s_;
   if (parts_per_travel_ > 0.0)
@@ -180,7 +180,7 @@ void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) c
 
 template <Drive::Mechanics kMechanics, typename Contact>
 double Drive::limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const {
-  // A limit that moves with the speed is taken at the middle of the step, found by a trial: order 2.
+  // A limit that depends on speed is evaluated at the middle of the step, which a trial step gives: order 2.
   if (effort_limit.empty() || command_effort(u_V, motion.w) == command_effort(u_V, 0.0)) return motion.w;
   DriveMotion trial = motion;
   move<kMechanics, Contact>(trial, deliver(trial, u_V, motion.w, duration_s), t_s, duration_s);
@@ -263,8 +263,8 @@ double Drive::sliding_effort(DriveState& state, double effort, double t_s) const
 }
 
 void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const {
-  // An alpha-beta tracker: the motor is drawn towards its measured travel as by a spring and a damper, which cannot
-  // excite the second mass. Alpha 0.15 averages the travel over some seven samples.
+  // An alpha-beta tracker: it pulls the motor towards its measured travel like a spring and a damper, without exciting
+  // the second mass. Alpha 0.15 averages the travel over about seven samples.
   constexpr double kAlpha = 0.15;
   constexpr double kBeta = kAlpha * kAlpha / (2.0 - kAlpha);
   step(state, u_V, t_s, duration_s);
@@ -306,7 +306,7 @@ void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contac
     motion.breakaway_gain = dwell_gain * -std::expm1(-motion.rest_s / dwell_time_s);
     return;
   }
-  // A smoothed start may swing through zero for a moment; only a motion that has lasted can come to rest unseen.
+  // A smoothed start may cross zero speed briefly. An undetected stop is possible only after a motion of this duration.
   constexpr double kRealMotion_s = 0.02;
   motion.rest_s = 0.0;
   if (w0 * w1 < 0.0 && motion.slide_s > kRealMotion_s) {
@@ -314,8 +314,9 @@ void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contac
   }
   motion.slide_s += duration_s;
   if (motion.breakaway_gain <= 0.0) return;
-  // At creep a stop of a millisecond goes unseen, and the gain of the rest goes with it. The friction that the motion
-  // shows is held against the level with the gain and the level without, averaged over some 30 ms.
+  // At creep a stop of a millisecond is not detected, although it ends the increase of static friction after the last
+  // rest. So the observed friction, averaged over about 30 ms, is compared with the levels with and without this
+  // increase.
   constexpr double kAveraging_s = 0.03;
   const double w = 0.5 * (w0 + w1);
   const int side = w >= 0.0 ? 0 : 1;
@@ -334,8 +335,8 @@ void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contac
 double Drive::encoder_error_at(double x) const { return sum_at(encoder_error, x); }
 
 double Drive::travel_at_reading(double reading) const {
-  // Each step multiplies what is left by the slope of the error: below a thousandth for any real encoder after two, and
-  // after 16 even where half of the reading's speed is its error.
+  // Each step multiplies the residual by the slope of the encoder error. It is below a thousandth after two steps for
+  // any real encoder, and after 16 steps even if the slope is 0.5.
   constexpr int kMostSteps = 16;
   constexpr double kSettled = 1e-3;  // of the error
   double error = encoder_error_at(reading);

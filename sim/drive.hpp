@@ -1,5 +1,5 @@
-// The dynamics of a drive, assembled from its description: from the command voltage to what the sensors would read.
-// The same object is the plant of a simulation and the predictor that a record is compared with.
+// The dynamics of a drive, assembled from its description: from the command voltage to the sensor readings. The same
+// object is the plant of a simulation and the predictor for recorded data.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace sim {
 /// Friction of one direction of motion, eq. (19): magnitudes, all >= 0.
 struct FrictionSide {
   double coulomb = 0.0;    ///< Nm or N
-  double breakaway = 0.0;  ///< static friction, Nm or N; equals coulomb where there is no Stribeck effect
+  double breakaway = 0.0;  ///< static friction, Nm or N; equals coulomb without a Stribeck effect
   double omega1 = 0.0;     ///< fading of the static part, rad/s or m/s; 0 means at once
   double omega2 = 0.0;     ///< rise of the Coulomb part
   double viscous = 0.0;    ///< Nm s/rad or N s/m
@@ -28,12 +28,12 @@ struct FrictionPoint {
   double slope;
 };
 
-/// The same with rates in place of speeds, for the predictor's innermost loop.
+/// FrictionSide with reciprocal speeds, for the predictor's innermost loop.
 struct SlidingCurve {
   double coulomb, breakaway, viscous;
-  double rate1, rate2;  ///< 1/omega, s/rad or s/m; 0 where omega is 0
+  double rate1, rate2;  ///< 1/omega, s/rad or s/m; 0 if omega is 0
 
-  /// Eq. (19) without its viscous term, at speed >= 0, with so many times the static friction.
+  /// Eq. (19) without its viscous term, at speed >= 0, with static friction times `breakaway_factor`.
   FrictionPoint dry(double speed, double breakaway_factor = 1.0) const;
 };
 
@@ -49,24 +49,23 @@ struct Bristles {
   double damping = 0.0;    ///< sigma1, Nm s/rad or N s/m
 };
 
-/// Everything of the drive that moves or remembers, but for the commands of its dead time. Speeds in rad/s or m/s,
-/// travel in mm or m.
+/// State of the drive, except for the delayed commands. Speeds in rad/s or m/s, travel in mm or m.
 struct DriveMotion {
   double x = 0.0;       ///< travel of the motor side
   double w = 0.0;       ///< speed of the motor
-  double load_x = 0.0;  ///< travel of the table, where it is a mass of its own
+  double load_x = 0.0;  ///< travel of the table, if it is a mass of its own
   double load_w = 0.0;
   double bristle = 0.0;         ///< deflection of the contact, rad or m
-  double bristle_doubt = 1.0;   ///< its error while following a known motion, over that at rest
-  double friction_speed = 0.0;  ///< the speed that the friction remembers
+  double bristle_doubt = 1.0;   ///< its error while following a known motion, relative to that at rest
+  double friction_speed = 0.0;  ///< lagged speed, for friction_lag
   double rest_s = 0.0;          ///< time at rest
-  double restuck = 0.0;         ///< evidence that an unseen stop has taken the rest's gain away, -1..1
+  double restuck = 0.0;         ///< evidence that an undetected stop has reset breakaway_gain, -1..1
   double slide_s = 0.0;         ///< time since the last rest, while following a known motion
-  double breakaway_gain = 0.0;  ///< what the last rest added to the static friction, relative
-  double effort = 0.0;          ///< what the current loop delivers, Nm or N
-  double tach = 0.0;            ///< what the tachometer's filter holds
-  double turned_x = 0.0;        ///< where the motion last turned over, mm or m
-  double heading = 0.0;         ///< the way it has gone since, +1 or -1; 0 before it has moved
+  double breakaway_gain = 0.0;  ///< relative increase of static friction by the last rest
+  double effort = 0.0;          ///< output of the current loop, Nm or N
+  double tach = 0.0;            ///< state of the tachometer's filter
+  double turned_x = 0.0;        ///< travel at the last reversal, mm or m
+  double heading = 0.0;         ///< direction since then, +1 or -1; 0 before the first motion
 };
 
 struct DriveState : DriveMotion {
@@ -80,7 +79,7 @@ class Drive {
   /// Throws std::invalid_argument for a kind that the catalogue does not hold.
   explicit Drive(const DriveDescription& description);
 
-  /// A state at rest in all that is hidden.
+  /// A state with this travel and speed, and all hidden states at rest.
   DriveState at(double x, double w) const;
 
   /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.
@@ -88,26 +87,26 @@ class Drive {
     (this->*step_)(state, u_V, t_s, duration_s);
   }
 
-  /// Lets the hidden states follow a motion that is known, from the state's to (x1, w1). Returns the mean effort that
-  /// reaches the drive's inertia before friction is taken off, Nm or N.
+  /// Lets the hidden states follow a known motion from the present state to (x1, w1). Returns the mean torque or force
+  /// on the drive's inertia before friction is subtracted, Nm or N.
   double follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const;
 
-  /// Friction of a sliding state, signed like its speed; `effort` is what is transmitted, Nm or N.
+  /// Friction of a sliding state, signed like its speed; `effort`: transmitted torque or force, Nm or N.
   double sliding_effort(DriveState& state, double effort, double t_s) const;
 
-  /// What an ideal encoder reads, with the errors that belong to the drive but without quantisation.
+  /// Encoder reading with the drive's encoder errors, but without quantisation.
   double encoder(const DriveMotion& motion) const {
     return encoder_error.empty() ? motion.x : motion.x + encoder_error_at(motion.x);
   }
 
-  /// What the encoder's reading adds to the true travel.
+  /// Encoder reading minus true travel.
   double encoder_error_at(double x) const;
 
-  /// The travel at which the encoder reads `reading`. An error whose slope over the travel reaches 1 has no such
-  /// travel; the search then ends after its most steps.
+  /// The travel at which the encoder reads `reading`. There may be no such travel if the slope of the error reaches 1;
+  /// the search then ends after its largest number of steps.
   double travel_at_reading(double reading) const;
 
-  /// Travel of the table: of the load's side, with what the screw adds to it.
+  /// Travel of the table: travel of the load's side plus the screw's error.
   double table(const DriveMotion& motion, double t_s) const {
     const double travel = second_mass ? motion.load_x : motion.x;
     double sum = travel;
@@ -115,24 +114,24 @@ class Drive {
     return sum;
   }
 
-  /// What the tachometer reads without its noise.
+  /// Tachometer reading without noise.
   double tachometer(const DriveMotion& motion) const {
     return tach_gain * motion.tach * (tach_ripple.empty() ? 1.0 : tach_ripple_at(motion.x)) + tach_offset;
   }
 
-  /// The mean effort that the motor is given over an interval with `u_V` held, Nm or N; moves what the command path
-  /// remembers (dead time, current loop).
+  /// Mean torque or force of the motor over an interval with `u_V` held, Nm or N; advances the states of the command
+  /// path (dead time, current loop).
   double deliver_over(DriveState& state, double u_V, double duration_s) const;
 
-  /// How far back a motion still shows in the hidden states, s; 0 where there are none.
+  /// Time for which the hidden states depend on an earlier motion, s; 0 if there are no hidden states.
   double memory_s() const;
-  /// Whether anything but friction adds to or takes from the effort that the command asks for.
+  /// Whether anything but friction changes the torque or force that is proportional to the command.
   bool shapes_effort() const;
   bool has_second_mass() const { return second_mass.has_value(); }
-  /// `friction`, forward and backward, as the motion uses it.
+  /// `friction`, forward and backward, in the form for the innermost loop.
   const std::array<SlidingCurve, 2>& curves() const { return curves_; }
 
-  // The places where an effect can act. Effects fill them; an empty one costs nothing.
+  // The places where an effect can act. Effects fill them; an empty one takes no time.
   double effort_per_volt = 0.0;
   double lead = 1.0;
   double inertia = 0.0;
@@ -151,7 +150,7 @@ class Drive {
   std::vector<std::function<double(double t_s, double x)>> further_level;  ///< of friction, Nm or N
   /// Further friction level by the travel since the last reversal, mm or m.
   std::vector<std::function<double(double travelled)>> friction_after_reversal;
-  double transmitted_share = 0.0;  ///< friction per transmitted effort
+  double transmitted_share = 0.0;  ///< friction per transmitted torque or force
   double friction_memory_s = 0.0;
   double dwell_gain = 0.0;
   double dwell_time_s = 0.0;
@@ -166,7 +165,7 @@ class Drive {
 
   /// Longest step of the integrator inside a sample, s; the constructor derives it from the drive's fastest mode.
   double max_step_s = 0.0;
-  /// Shortest period over the travel of anything that acts on the motion, mm or m; a step spans a small part of it.
+  /// Shortest period over the travel among the effects on the motion, mm or m; a step spans a small part of it.
   double finest_period = std::numeric_limits<double>::infinity();
 
  private:
@@ -204,13 +203,13 @@ class Drive {
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;
 
-  Step step_ = nullptr;                   ///< the cheapest that the effects allow
+  Step step_ = nullptr;                   ///< the fastest step function that the effects allow
   double mobility_ = 0.0;                 ///< 1/inertia
   std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
-  bool straight_command_ = false;         ///< effort in proportion to the command
-  bool remembers_ = false;                ///< something but the masses and their contact remembers
-  bool bare_ = false;              ///< the command's effort acts alone, and on nothing but masses and their contact
-  double parts_per_s_ = 0.0;       ///< that the masses need at least
+  bool straight_command_ = false;         ///< torque or force is proportional to the command
+  bool remembers_ = false;                ///< there are states besides those of the masses and their contact
+  bool bare_ = false;  ///< only the command's torque or force acts, and only masses and their contact have states
+  double parts_per_s_ = 0.0;       ///< smallest number of parts for the masses
   double parts_per_travel_ = 0.0;  ///< per mm or m
   std::optional<Coupling> coupling_;
 };

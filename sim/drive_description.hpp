@@ -50,8 +50,8 @@ struct DataSheet {
   }
 };
 
-/// A parameter of which an effect may have many has a number after its id: "cosine_72" is the cosine of order 72. The
-/// id without it ("cosine"); an id without a number is its own family.
+/// The id without its number. Parameters that an effect may have several times carry a number: "cosine_72", the cosine
+/// of order 72, is of the family "cosine". An id without a number is its own family.
 std::string_view family_of(std::string_view id);
 std::string numbered_id(std::string_view family, double number);
 /// The number in an id; empty if there is none.
@@ -69,17 +69,17 @@ struct Belief {
 struct EffectEntry {
   std::string kind;
   std::map<std::string, double> parameters;
-  std::map<std::string, std::array<double, 2>> ci95;  ///< 95 % interval of those parameters that were fitted
+  std::map<std::string, std::array<double, 2>> ci95;  ///< 95 % intervals of the fitted parameters
   std::string from;                                   ///< the record that the values came from; may be empty
-  std::string over{};                                 ///< the coordinate of a free curve; empty for all else
+  std::string over{};                                 ///< the coordinate of a free curve; otherwise empty
   std::set<std::string> held{};                       ///< parameters that a fit does not change
-  std::map<std::string, Belief> believed{};           ///< priors; a fit changes the value alone
+  std::map<std::string, Belief> believed{};           ///< priors; a fit changes only the value
 
   bool has(const std::string& id) const { return parameters.contains(id); }
   /// Whether it has a parameter of that family, with any number.
   bool has_any(std::string_view family) const;
   double at(const std::string& id) const { return parameters.at(id); }
-  /// The magnitude for one direction: its own value, or the one that stands for both.
+  /// The magnitude for one direction: its own value, or the one for both directions.
   double either(const std::string& id, const std::string& both) const {
     const auto own = parameters.find(id);
     return std::abs(own != parameters.end() ? own->second : parameters.at(both));

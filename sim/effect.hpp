@@ -40,17 +40,16 @@ struct ParameterInfo {
   double lower;                 ///< physical bounds, in the unit of the key
   double upper;
   Scale scale = Scale::unity;
-  std::vector<double> starts{};  ///< of a fit, in units of `scale`; several for several local minima
+  std::vector<double> starts{};  ///< start values of a fit, in units of `scale`; several for several local minima
   bool optional = false;         ///< may be absent from a model file
-  bool rigid_at_upper = false;   ///< at the upper bound this part of the effect no longer yields: it is absent
-  std::string_view
-      pair_of{};  ///< set on the one-for-both-directions form: "positive" level stands for positive/negative
+  bool rigid_at_upper = false;   ///< at the upper bound this part of the effect is rigid, that is, absent
+  std::string_view pair_of{};  ///< set for a parameter that gives both directions: replaces the pair positive/negative
 
   std::string_view key(DriveKind kind) const { return kind == DriveKind::rotary ? rotary_key : linear_key; }
 };
 
-/// The place of an effect in the drive, which determines the searches that include it. Only a sensor on the table shows
-/// effects on the `table`.
+/// The place of an effect in the drive, which determines the searches that include it. Effects on the `table` are
+/// visible only with a sensor on the table.
 enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer, table };
 
 struct EffectInfo {
@@ -58,7 +57,7 @@ struct EffectInfo {
   std::string_view title;
   std::string_view equation;
   Stage stage;
-  bool base = false;  ///< inertia, viscous, coulomb: re-fitted first, never a discovery
+  bool base = false;  ///< inertia, viscous, coulomb: re-fitted first, never reported as found
   /// Has parameters `cosine`, `sine` and `period` over the travel, the first two once for every order: "cosine" is the
   /// first, "cosine_6" the sixth.
   bool periodic = false;
@@ -70,7 +69,7 @@ struct EffectInfo {
   /// Coordinates on which its residual depends, for a diagnosis without this effect: speed, position,
   /// travel_since_reversal, acceleration, current, rest, time, frequency.
   std::vector<std::string_view> along{};
-  std::vector<std::string_view> confused_with;  ///< kinds that leave a similar trace
+  std::vector<std::string_view> confused_with;  ///< kinds with a similar residual
   std::string_view separate_by;                 ///< the experiment that tells them apart
   std::string_view origin;                      ///< its cause in a machine
   std::string_view remedy;                      ///< remedies for a mechanic or an electrician

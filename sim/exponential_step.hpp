@@ -13,7 +13,7 @@ struct ExponentialFactors {
   double phi2;
 };
 
-/// By their definition, for z well away from zero.
+/// Computed by the definition, for z well away from zero.
 [[gnu::noinline, gnu::cold]] inline ExponentialFactors exponential_factors_far_from_zero(double z) {
   const double phi1 = std::expm1(z) / z;
   return {phi1, (phi1 - 1.0) / z};
@@ -37,7 +37,7 @@ inline double lag_mean(double& value, double target, double time_constant, doubl
   return target + gap * (z > 0.125 ? (1.0 - left) / z : exponential_factors(-z).phi1);
 }
 
-/// Time at which v0 + t phi1(lambda t) f reaches zero, for v0 > 0 and f < 0; +infinity where it never does.
+/// Time at which v0 + t phi1(lambda t) f reaches zero, for v0 > 0 and f < 0; +infinity if it never does.
 inline double time_to_zero(double v0, double f, double lambda) {
   const double ratio = -lambda * v0 / f;
   if (std::abs(ratio) < 1e-8) return -v0 / f;

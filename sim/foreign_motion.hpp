@@ -1,4 +1,4 @@
-// Motion from another source than the catalogue, such as another simulator, with the same converter and sensors.
+// Motion from another source, such as another simulator, in place of the catalogue's drive; converter and sensors stay.
 #pragma once
 
 #include <optional>

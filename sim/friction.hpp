@@ -10,7 +10,7 @@
 
 namespace sim {
 
-/// Friction never drives, whatever values a fit tries.
+/// Limits friction to >= 0, so that it never drives, whatever values a fit tries.
 inline FrictionPoint never_driving(const FrictionPoint& friction) {
   return friction.effort < 0.0 ? FrictionPoint{0.0, 0.0} : friction;
 }
@@ -95,7 +95,7 @@ template <typename Contact>
   }
 }
 
-/// Moves a mass for `duration_s` under a constant effort. `Contact` tells its friction:
+/// Moves a mass for `duration_s` under a constant effort. `Contact` gives its friction:
 ///   FrictionPoint sliding(int side, double speed)   magnitude while moving forward (side 0) or backward (side 1)
 ///   double breakaway(int side)                      level that the effort must pass at standstill
 ///   void broke_away(), came_to_rest(), rested(double duration_s)
@@ -160,7 +160,7 @@ class LinearisedContact {
  private:
   double direction_;
   double kick_;         ///< speed per effort
-  double kept_, lost_;  ///< of the speed: the remaining part, and the loss by Coulomb friction
+  double kept_, lost_;  ///< remaining part of the speed, and speed lost by Coulomb friction
 };
 
 }  // namespace sim

@@ -30,7 +30,7 @@ struct HarmonicTerm {
   double sine = 0.0;
 };
 
-/// The id of an order's amplitude: the family itself ("cosine") for the first, else numbered.
+/// The id of an order's amplitude: the family itself ("cosine") for the first order, numbered for all others.
 std::string harmonic_id(std::string_view family, double order);
 
 /// The orders of a periodic effect's entry, lowest first.

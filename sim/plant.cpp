@@ -60,7 +60,7 @@ void Plant::advance(double duration_s) {
 }
 
 std::int64_t Plant::counts_at(double encoder_travel) const {
-  // Without a resolution the reading passes through a grid far below any real scale.
+  // Without a resolution the reading is rounded to a step far below that of any real scale.
   const double resolution = data_.encoder_resolution > 0.0 ? data_.encoder_resolution : 1e-9;
   if (foreign_) return std::llround(encoder_travel / resolution);
   return static_cast<std::int64_t>(std::floor(encoder_travel / resolution));

@@ -31,8 +31,7 @@ class Plant {
   /// count at any acceleration that a drive reaches.
   void advance(double duration_s);
 
-  /// Encoder position, counts from the start: the edge that was passed last (rounding down), as a quadrature counter
-  /// does.
+  /// Encoder position, counts from the start, rounded down to the last edge like a quadrature counter.
   std::int64_t encoder_counts() const { return counts_at(encoder_travel()); }
   /// The encoder's position before rounding, mm or m, and its counts.
   double encoder_travel() const { return foreign_ ? state_.x : drive_.encoder(state_); }
@@ -62,7 +61,7 @@ class Plant {
   DataSheet data_;
   std::shared_ptr<ForeignMotion> foreign_;
   Drive drive_;
-  Drive unpowered_;  ///< the same without the motor's effort
+  Drive unpowered_;  ///< the same without the motor's torque or force
   DriveState state_;
   std::mt19937_64 noise_;
   std::normal_distribution<double> normal_{0.0, 1.0};

@@ -17,8 +17,8 @@ inline double presliding_step_s(const Bristles& bristles, double inertia) {
 }
 
 /// A mass on its bristles through steps of `h` under a constant effort, linearly implicit and of order 2:
-/// y += h phi1(Z) f with Z = h times the Jacobian, and for phi1 what makes of it Pade's (1, 2) of the exponential,
-/// which is L-stable: (I - Z/6) / (I - 2 Z/3 + Z^2/6).
+/// y += h phi1(Z) f with Z = h times the Jacobian. phi1 = (I - Z/6) / (I - 2 Z/3 + Z^2/6) corresponds to the (1, 2)
+/// Pade approximation of the exponential, which is L-stable.
 template <typename Contact>
 struct MassOnBristles {
   const Bristles& bristles;
@@ -40,7 +40,7 @@ struct MassOnBristles {
 
     const double z_rate = w - speed * bent;
     const double w_rate = (effort - stiffness * z - sign * viscous.effort) * mobility - damping * z_rate;
-    // The Jacobian of both over w and z, times h.
+    // The Jacobian of both derivatives over w and z, times h.
     const double zz = -h * stiffness * speed * per_level;
     const double zw = h * (1.0 - sign * bent * (1.0 - speed * dry.slope * per_level));
     const double ww = -h * viscous.slope * mobility - damping * zw;
@@ -105,8 +105,8 @@ void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& moti
   if (w != 0.0) motion.bristle = sign * settled + (motion.bristle - sign * settled) * left;
   const double viscous = sign * contact.viscous(side, speed).effort;
   const double carried = (contact_effort - viscous - bristles.damping * w) / bristles.stiffness;
-  // The error at rest fades with the travel. The smaller it is, the more the noise of the acceleration would disturb,
-  // so the gain, as Kalman's, is proportional to its square.
+  // The error at rest fades with the travel. The smaller the error, the smaller the gain must be against noise of the
+  // acceleration; as in a Kalman filter, the gain is proportional to the squared error.
   if (w == 0.0) motion.bristle_doubt = 1.0;
   motion.bristle_doubt *= left;
   const double rate = motion.bristle_doubt * motion.bristle_doubt * std::sqrt(bristles.stiffness / inertia);

@@ -43,7 +43,7 @@ struct FreeMass {
   bool gets_to(double /*end*/) const { return true; }
 };
 
-/// A mass that slides on in its direction, by friction linearised once.
+/// A mass that slides in one direction, with friction linearised once.
 struct GlidingMass {
   double w;
   LinearisedContact contact;
@@ -66,12 +66,12 @@ struct RubbingMass {
   bool gets_to(double /*end*/) const { return true; }
 };
 
-/// Moves both under a constant effort for `parts` steps of `duration_s` each, or fewer where one of them does not get
-/// to its end. Returns the steps done.
+/// Moves both under a constant torque or force for `parts` steps of `duration_s` each; ends before a step that one of
+/// them cannot complete. Returns the number of completed steps.
 template <typename Motor, typename Load>
 [[gnu::always_inline]] inline int move_coupled(const Coupling& coupling, double lead, DriveMotion& motion,
                                                double effort, double duration_s, int parts, Motor motor, Load load) {
-  // The twist half a step ahead, speeds over the whole step: symplectic, order 2 for the spring.
+  // The twist is advanced by half a step, the speeds by a whole step: symplectic, order 2 for the spring.
   const double half_s = 0.5 * duration_s;
   double twist = (motion.x - motion.load_x) * coupling.per_lead;
   double motor_speeds = 0.0, load_speeds = 0.0;
@@ -94,7 +94,7 @@ template <typename Motor, typename Load>
   return done;
 }
 
-/// The same with all stops and starts, the contact's friction on the sides where it acts.
+/// The same including all stops and starts, with the contact's friction on the sides on which it acts.
 template <typename Contact>
 [[gnu::noinline]] void move_coupled_through_stops(const Coupling& coupling, double lead, DriveMotion& motion,
                                                   double effort, double duration_s, int parts, Contact& contact) {

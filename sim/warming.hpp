@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// 1 - exp(-(t - t0)/tau) of an entry, t on the clock of the records, s.
+/// 1 - exp(-(t - t0)/tau) with the entry's t0 and tau; t on the clock of the records, s.
 class Warming {
  public:
   explicit Warming(const EffectEntry& entry)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs cppcheck over our sources below $1 with $2 jobs. Tests are left to the compilers: cppcheck 2.10 does not know
-# GoogleTest's macros. Nor does it know strings as template arguments, which are taken out of the copy that it reads.
+# GoogleTest's macros. It does not know strings as template arguments either; they are removed from the copy that it
+# reads.
 set -eu
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT

@@ -1,6 +1,7 @@
 #!/bin/sh
 # image_symbols.sh NM SIZE FLASH_LIMIT RAM_LIMIT IMAGE.elf...
-# Fails when an image holds what must not be on the target (heap, double precision, exceptions) or is too large.
+# Fails when an image contains functions that must not be on the target (heap, double precision, exceptions) or is too
+# large.
 set -eu
 nm=$1 size=$2 flash_limit=$3 ram_limit=$4
 shift 4
@@ -13,7 +14,7 @@ for image in "$@"; do
     status=1
   fi
   capture=$("$nm" "$image" | awk '$3 == "_capture_rows" || $3 == "_capture_end" { print "0x" $1 }' | sort | xargs)
-  # An image without a capture has neither.
+  # An image without a capture has neither symbol.
   [ -z "$capture" ] || capture=$((${capture#* } - ${capture% *}))
   "$size" -A "$image" | awk -v image="$image" -v capture="${capture:-0}" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
     $1 ~ /^\.(vectors|image_header|text|ARM\.exidx|data|ccm)$/ { flash += $2 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Fails when an include of the tree $1 breaks the rules of who may know whom. Ours are the folders at the top; their
-# headers are included in quotes, by the path from the root.
+# Fails when an include of the tree $1 breaks the rules of which folder may include which. Headers of this project are
+# included in quotes, by the path from the root.
 set -eu
 cd "$1"
 find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' \) 2>/dev/null | LC_ALL=C sort | awk '

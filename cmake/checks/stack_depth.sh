@@ -2,9 +2,9 @@
 # stack_depth.sh FOLDER LIMIT ROOT... [via:NAME...] [absent:NAME...]
 # Worst-case stack of each ROOT function (part of its name) from the call graphs (*.ci) that the compiler left below
 # FOLDER (-fcallgraph-info=su). Fails above LIMIT bytes, on recursion, on frames of unknown size and on a missing root.
-# A call through a pointer may reach every function with a NAME of via: in its name; without one it is a fault. absent:
-# names a weak function that nobody defines: it is called only if it exists.
-# Control interrupt and background share the stack, so the depths of the roots and an exception frame each are added.
+# A call through a pointer may reach every function with a NAME of via: in its name; without via: such a call is an
+# error. absent: names a weak function that is not defined and therefore never called. Control interrupt and background
+# share the stack, so the depths of the roots and an exception frame each are added.
 set -eu
 folder=$1 limit=$2
 shift 2
@@ -27,7 +27,7 @@ find "$folder" -name '*.ci' -exec cat {} + | awk -v limit="$limit" -v roots="$*"
     source = field("sourcename"); target = field("targetname")
     if (!((source, target) in seen)) { seen[source, target] = 1; callee[source, ++callees[source]] = target }
   }
-  # What the compiler does not see the inside of: block operations and integer division, which use little or no stack.
+  # Library functions without a call graph: block operations and integer division, which use little or no stack.
   function is_library(f) { return f ~ /^(mem(cpy|set|move|cmp)|__aeabi_[a-z0-9_]+|__builtin_[a-z_]+|__popcountsi2)$/ }
   function complain(text) { print text > "/dev/stderr"; broken = 1 }
   function depth(f,   i, most, d) {

@@ -16,10 +16,11 @@ set(CPU_FLAGS_m4 -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16)
 set(CPU_FLAGS_m3 -mcpu=cortex-m3 -mthumb)
 set(CPU_FLAGS_m0plus -mcpu=cortex-m0plus -mthumb)
 
-# Contraction is off on every machine: with it, a multiplication and an addition round once here and twice elsewhere.
+# Contraction is off on every machine. With contraction, a multiplication and an addition would round once on one
+# machine and twice on another.
 add_library(axis_target_flags INTERFACE)
 target_link_libraries(axis_target_flags INTERFACE axis_core_flags)
-# Of fixed point, whose operations are long, -O3 makes copies: 13 KB of flash for 5 % of the instructions.
+# Fixed-point operations are long, and -O3 copies them: 13 KB of flash to save 5 % of the instructions.
 target_compile_options(axis_target_flags INTERFACE $<IF:$<BOOL:$<TARGET_PROPERTY:AXIS_FIXED_POINT>>,-O2,-O3>
   -fno-schedule-insns -g -ffp-contract=off -fno-exceptions -fno-rtti -fno-threadsafe-statics
   -fno-use-cxa-atexit -ffunction-sections -fdata-sections -fno-common -fstack-usage -fcallgraph-info=su)

@@ -1,4 +1,4 @@
-# What `make install` puts below PREFIX, and the Debian package that `make deb` makes of the same.
+# The files that `make install` puts below PREFIX, and the Debian package that `make deb` makes of them.
 include(AxisVersion)
 set(AXIS_ZSH_DIR "share/zsh/site-functions" CACHE STRING "Where zsh looks for completions, below the prefix")
 set(DOCUMENTS "${CMAKE_BINARY_DIR}/documents")
@@ -83,7 +83,7 @@ if(TARGET axis_python)
 The analysis of axistool as functions of Python with typed results: records
 as NumPy arrays, models, identify, compare, diagnose, add, improve, design,
 and captures from boards. The figures are those of the command line.")
-  # Byte code comes and goes with the package, as dh_python3 has it.
+  # Byte code is written at installation and removed with the package, as by dh_python3.
   set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${AXIS_ROOT}/cmake/package/postinst;${AXIS_ROOT}/cmake/package/prerm")
 else()

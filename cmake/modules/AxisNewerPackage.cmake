@@ -1,8 +1,8 @@
 # Packages of Debian 13 that Debian 12 lacks, unpacked and never installed; one place for all build trees.
 set(AXIS_PACKAGES "${AXIS_ROOT}/build/packages" CACHE PATH "Where packages are unpacked that are not installed")
 
-# axis_newer_package(NAME FOLDER_VARIABLE [REQUIRED]): FOLDER_VARIABLE is where the package lies as if that were /; it is
-# empty where the package cannot be had.
+# axis_newer_package(NAME FOLDER_VARIABLE [REQUIRED]): sets FOLDER_VARIABLE to the folder that contains the package's
+# files as under /, or to nothing if the package is not available.
 function(axis_newer_package NAME FOLDER)
   execute_process(COMMAND "${AXIS_ROOT}/cmake/packages/fetch_newer.sh" "${AXIS_PACKAGES}" "${NAME}"
                   RESULT_VARIABLE STATUS ERROR_VARIABLE WHY)

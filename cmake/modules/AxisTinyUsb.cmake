@@ -1,4 +1,4 @@
-# TinyUSB's device stack, compiled where Debian's package of its sources lies. Its warnings are ignored.
+# TinyUSB's device stack, compiled from the sources in Debian's package. Its warnings are ignored.
 include_guard()
 axis_newer_package(tinyusb-source TINYUSB_PACKAGE REQUIRED)
 set(TINYUSB "${TINYUSB_PACKAGE}/usr/src/tinyusb/src")

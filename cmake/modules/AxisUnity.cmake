@@ -1,13 +1,14 @@
-# Sources of one folder are compiled together: most of a source's time goes to headers (Eigen, fmt, JSON, CLI11) and to what
-# is made of their templates, which a folder then pays for once. Names in anonymous namespaces must therefore differ within
-# a folder (cmake/checks/local_names.py). `make` and `make test` build a new tree so; UNITY=OFF compiles each source by
-# itself, for work on a few of them; `make lint` looks at each by itself too, which shows that it includes what it names.
+# Sources of one folder are compiled together: most of the compile time goes to headers (Eigen, fmt, JSON, CLI11) and
+# their templates, which are then compiled once per folder. Names in anonymous namespaces must therefore differ within a
+# folder (cmake/checks/local_names.py). `make` and `make test` build a new tree in this way; UNITY=OFF compiles each
+# source separately, for work on a few of them. `make lint` also checks each separately, which shows that it includes
+# what it uses.
 option(AXIS_UNITY "Compile the sources of a folder together" OFF)
 
-# axis_unity(OUT SOURCE...): what to compile in place of the sources: themselves, or files that include at most
-# AXIS_UNITY_SOURCES of a folder. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION, stays by itself.
-# Folders of AXIS_HOT_FOLDERS compute, as sources by themselves do: -O2. The others read, write and wait, and -O1 compiles
-# them in two thirds of the time.
+# axis_unity(OUT SOURCE...): sets OUT to the files to compile: the sources themselves, or files that include at most
+# AXIS_UNITY_SOURCES of a folder. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION, stays by
+# itself. Folders of AXIS_HOT_FOLDERS and separate sources compute: -O2. All others read, write and wait: -O1, which
+# compiles them in two thirds of the time.
 set(AXIS_UNITY_SOURCES 30)
 set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer scale simulated_board)
 function(axis_unity OUT)

@@ -2,11 +2,12 @@
 add_library(axis_flags INTERFACE)
 target_include_directories(axis_flags INTERFACE "${AXIS_ROOT}")
 target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic
-                       # Among sources compiled together a local name may be one of another source.
+                       # If sources are compiled together, a local name may also exist in another source.
                        $<$<NOT:$<OR:$<BOOL:${AXIS_UNITY}>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Werror
                        -ffp-contract=off)
 if(AXIS_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # Larger files: the compiler looks for memory to free less often. A twelfth of its time, for 130 MB more at most.
+  # For larger files: the compiler collects free memory less often. This saves a twelfth of its time and takes at most
+  # 130 MB more.
   target_compile_options(axis_flags INTERFACE --param=ggc-min-expand=300 --param=ggc-min-heapsize=600000)
 endif()
 if(AXIS_SANITIZE)

@@ -1,5 +1,6 @@
 # Script: cmake -DROOT=... -DOUTPUT=... -DVERSION=... -P WriteBuildVersion.cmake
-# Writes the header that tells an image its version and the commit it was built from; touches it only when that changes.
+# Writes the header that tells an image its version and the commit it was built from; leaves it
+# unchanged if both are the same.
 set(HASH unknown)
 find_program(GIT git)
 if(GIT)

@@ -17,7 +17,7 @@ foreach(NAME IN ITEMS sim hal_usbip host)
       INTERFACE_INCLUDE_DIRECTORIES "${AXIS_PREFIX}/include/axis" INTERFACE_COMPILE_FEATURES cxx_std_20)
   endif()
 endforeach()
-# USB parts of which nothing is used would need a clock.
+# Unused USB code would need a clock.
 set_target_properties(axis::hal_usbip PROPERTIES INTERFACE_LINK_OPTIONS "-Wl,--gc-sections")
 set_target_properties(axis::host PROPERTIES INTERFACE_LINK_LIBRARIES
   "axis::sim;axis::hal_usbip;Eigen3::Eigen;Ceres::ceres;fmt::fmt;nlohmann_json::nlohmann_json;PkgConfig::AXIS_TOMLPP;PkgConfig::AXIS_FFTW;Threads::Threads;${CMAKE_DL_LIBS}")

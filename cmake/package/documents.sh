@@ -14,7 +14,8 @@ for shell in bash zsh fish; do
 done
 "$axistool" udev-rule > "$folder/70-axis.rules"
 
-# .github/CHANGELOG.md in Debian's form: "## VERSION, DATE" begins a version, "- " an entry, which goes on indented.
+# .github/CHANGELOG.md in Debian's form: "## VERSION, DATE" begins a version, "- " an entry, whose further lines are
+# indented.
 maintainer='The axis maintainers <maintainers@axis.invalid>'
 awk -v maintainer="$maintainer" '
   function entry(  words, count, k, line) {

@@ -32,7 +32,7 @@ def needed_by(module: Path) -> list[str]:
 
 
 def own_name(name: str, path: Path) -> str:
-    """With a hash of its content: two packages in one process then share a library only where it is the same."""
+    """The name with a hash of the content: two packages in one process then share a library only if it is the same."""
     stem, _, rest = name.partition(".so")
     return f"{stem}-{hashlib.sha256(path.read_bytes()).hexdigest()[:8]}.so{rest}"
 

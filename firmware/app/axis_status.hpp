@@ -6,7 +6,7 @@
 
 namespace firmware {
 
-/// Values of one instant, without the velocity. `fitted`, `pitch_on`: from the parameters.
+/// All values belong to one instant; the velocity is left out. `fitted`, `pitch_on`: from the parameters.
 template <typename Axis>
 AxisStatus axis_status(const Axis& axis, bool fitted, bool pitch_on) {
   AxisStatus status;

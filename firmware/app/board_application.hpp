@@ -53,7 +53,7 @@ class BoardApplication {
       trigger_.adopt(own_memory_);
   }
 
-  /// Before the control interrupt runs: takes the parameters out of the store and hands them to the axes.
+  /// Call it before the control interrupt runs: loads the parameters from the store and configures the axes.
   void start() {
     store_.load(active_);
     fault_log_.start();
@@ -133,14 +133,14 @@ class BoardApplication {
     return status_of(result);
   }
 
-  /// The same for a part of a table or an image. Only while no drive is enabled.
+  /// Like save(), for a part of a table or an image. Only while no drive is enabled.
   template <typename Write>
   auto write_flash(Write write) {
     const typename Board::ControlShutOut guard;
     return while_stalled(write);
   }
 
-  /// Makes the staged table the axis's, switches it on or off, and saves it with the parameters. No drive is enabled.
+  /// Assigns the staged table to the axis, switches it on or off, saves it with the parameters; no drive is enabled.
   Status finish_table(std::uint32_t crc, bool on) {
     staged_ = active_;
     staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
@@ -211,7 +211,7 @@ class BoardApplication {
     return Status::ok;
   }
 
-  /// To a position (only a homed axis), or if `relative` by this many counts.
+  /// Moves to a position (only a homed axis) or, if `relative`, by this many counts.
   Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
@@ -293,7 +293,7 @@ class BoardApplication {
     return target_counts > axes_[axis].telemetry().encoder_counts;
   }
 
-  /// Looks for home, or, as the operator states, the axis stands there; homing.mode determines which is allowed.
+  /// Searches for home or, if `here`, sets the present position to homing.position, as homing.mode allows.
   Status home(std::size_t axis, bool here) {
     if (!is_fitted(axis)) return Status::not_fitted;
     const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);
@@ -313,14 +313,14 @@ class BoardApplication {
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].clear_fault();
   }
 
-  /// A round of the background. Like save() it writes flash while the control interrupt is stopped.
+  /// Call it once per round of the background. Like save(), it writes flash while the control interrupt is stopped.
   void keep_fault_log() {
     look_for_faults();
     if (!fault_log_.wants_flash() || any_enabled()) return;
     const typename Board::ControlShutOut guard;
     while_stalled([this] { return fault_log_.write(); });
   }
-  /// After start().
+  /// Call it after start().
   void log_end_of_last_run(const LoggedFault& ended) { fault_log_.note(ended); }
   bool logged_fault(std::size_t age, FaultLogPayload& payload) { return fault_log_.read(age, payload); }
 
@@ -330,14 +330,14 @@ class BoardApplication {
   }
   // Ownership of motion. Every client may read, stop and disable.
   bool may_command(ClientToken client) { return owner_.may_command(client, is_in_motion()); }
-  /// The client has commanded motion, or takes over another's motion.
+  /// The client has commanded motion, or takes over the motion of another client.
   void become_owner(ClientToken client) {
     owner_.become(client);
     path_.take_over(client);
     owner_heard(client);
   }
   bool is_owner(ClientToken client) const { return owner_.is(client); }
-  /// A request of the owner proves that it is alive; while every axis stands, it may be silent for longer.
+  /// A request of the owner proves that the owner is alive; while every axis stands, it may be silent for longer.
   void owner_heard(ClientToken client) {
     if (!owner_.is(client)) return;
     const bool in_motion = is_in_motion();
@@ -393,7 +393,7 @@ class BoardApplication {
     return firmware::fault_row(axes_[axis], row, payload);
   }
 
-  /// Or about to be moved.
+  /// Whether any axis is enabled or about to be moved.
   bool any_enabled() const {
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (axes_[axis].is_or_will_be_on()) return true;
@@ -462,7 +462,7 @@ class BoardApplication {
     }
   }
 
-  /// With the tables that belong to the values.
+  /// Checks values together with the stored tables.
   SetRefusal check_all(const ParameterValues& values) const {
     const SetRefusal found = check<Scalar>(values);
     return found.kind == ValueRefusal::none ? check_tables(values, store_) : found;

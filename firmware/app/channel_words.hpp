@@ -31,7 +31,7 @@ constexpr bool has_scale(const Axis& axis) {
     return false;
 }
 
-/// Channels that a SupervisedAxis has, from the first.
+/// Number of channels of a SupervisedAxis.
 template <typename Axis>
 constexpr std::size_t channels_of(const Axis& axis) {
   return kChannels + (has_scale(axis) ? 1 : 0);
@@ -101,8 +101,8 @@ constexpr bool is_whole(Channel channel) {
          channel == Channel::flags;
 }
 
-/// The word in 16 bits: codes and counts by their low half, the reference in 1/16 counts, of a float the upper half,
-/// rounded (8 bits of its fraction: 0.4 %). Flags: state, bit 7 for saturated, then the fault.
+/// The word in 16 bits: the low half of codes and counts, the reference in 1/16 counts, the rounded upper half of a
+/// float (8 bits of its fraction: 0.4 %). Flags: state, bit 7 for saturated, then the fault.
 constexpr std::uint16_t narrow(std::uint32_t word, Channel channel) {
   switch (channel) {
     case Channel::dac_code:

@@ -14,7 +14,7 @@ class ExcitationService {
   bool is_active() const { return run_.is_active(); }
   std::size_t axis() const { return axis_; }
 
-  /// In the control interrupt, before the axes' step. An AxisGroup.
+  /// Call it in the control interrupt, before the axes' step. `axes`: an AxisGroup.
   template <typename Axes>
   [[gnu::noinline]] void before_step(Axes& axes) {
     run_.before_step(axes[axis_]);
@@ -46,7 +46,7 @@ class ExcitationService {
   void forget() { loaded_ = 0; }
   bool is_others(ClientToken client) const { return loaded_ != 0 && client != client_; }
 
-  /// False if it is not possible, or not all of its entries were loaded. start() follows.
+  /// False if the excitation is not possible, or not all of its entries were loaded. Otherwise start() follows.
   bool plan(const ExcitationRequest& r, const AxisValues& values, float rate_Hz) {
     for (const float value : {r.speed, r.drive_velocity, r.volts, r.amplitude, r.ride})
       if (!ScalarTraits<float>::is_finite(value)) return false;

@@ -55,7 +55,7 @@ class FaultLogService {
     return log_.add(entry);
   }
 
-  /// False beyond the oldest.
+  /// False beyond the oldest entry.
   bool read(std::size_t age, FaultLogPayload& payload) {
     const auto entry = log_.entry(age);
     payload = {run_s_, entry.value_or(LoggedFault{})};
@@ -85,7 +85,7 @@ class FaultLogService {
       entry.dac_code = static_cast<std::int16_t>(std::clamp<std::int32_t>(last.dac_code, Code::min(), Code::max()));
       return last.estimate.velocity;
     }();
-    if (!is_taken_[index] || axis.fault() == AxisFault::other_axis_stopped) return;  // the other fault has its own line
+    if (!is_taken_[index] || axis.fault() == AxisFault::other_axis_stopped) return;  // the other axis has the entry
     entry.axis = static_cast<std::uint8_t>(index);
     entry.run_s = run_s_;
     entry.velocity = velocity_of(index, velocity);

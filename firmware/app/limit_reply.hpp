@@ -20,13 +20,14 @@ constexpr std::int32_t unhomed_share(const AxisValues& v) {
   if (!(most > 0 && most < usual)) return kWholeVelocity;
   return static_cast<std::int32_t>(static_cast<float>(kWholeVelocity) * (most / usual));
 }
-/// mm/s (m/s) of a jog.
+/// `velocity`: of a jog, mm/s (m/s).
 constexpr bool exceeds_unhomed_limit(float velocity, const AxisValues& v) {
   const float most = v.get<"limits.unhomed_velocity">();
   return most > 0 && (velocity > most || velocity < -most);
 }
 
-/// An axis that is not fitted has no thresholds from a design. These limits apply to it, whatever the request's box is.
+/// Limits of an axis that is not fitted, which has no thresholds from a design. They apply whatever the request's box
+/// is.
 constexpr bool exceeds_unfitted_limits(const ExcitationRequest& r, const ParameterValues& values,
                                        RefusedValuePayload& refused) {
   const AxisValues v = values.axis(r.axis);

@@ -12,7 +12,7 @@ class Liveness {
   void control_ran() { control_periods_ = control_periods_ + 1; }
   void supervisor_ran() { supervisor_rounds_ = supervisor_rounds_ + 1; }
 
-  /// True when both have run since the last time it was true.
+  /// True if both have run since it last returned true.
   bool may_feed() {
     if (control_periods_ == fed_at_period_ || supervisor_rounds_ == fed_at_round_) return false;
     fed_at_period_ = control_periods_;

@@ -1,4 +1,4 @@
-// Ownership of motion and captures: only the client that commanded a motion keeps it alive.
+// Ownership of motion and captures: only requests of the client that commanded a motion keep it going.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace firmware {
 /// every client sees, but never the 8 bits above them, its pass. See protocol/README.md.
 using ClientToken = std::uint32_t;
 
-/// Background only. While an axis moves, only the owner may command; an axis at rest belongs to whoever commands it
-/// next.
+/// Background only. While an axis moves, only the owner may command. An axis at rest belongs to the client that
+/// commands it next.
 class MotionOwner {
  public:
   constexpr bool is(ClientToken client) const { return is_known_ && client == client_; }

@@ -19,7 +19,7 @@ class PathService {
  public:
   using ShutOut = typename Board::ControlShutOut;
   static constexpr std::size_t kAxes = Group::kAxes;
-  /// 2 s of pieces of 5 ms on average.
+  /// 2 s of path if a piece lasts 5 ms on average.
   static constexpr std::size_t kNodes = 400;
 
   using Probe = ProbeService<Group, Board>;
@@ -151,7 +151,7 @@ class PathService {
     disabled_at_end_ = 0;
   }
 
-  /// For the control interrupt, before the axes' steps, while is_moving().
+  /// Call it in the control interrupt, before the axes' steps, while is_moving().
   [[gnu::noinline]] void before_step() {
     if (axes_.board().is_host_lost()) follower_.stop(PathEnd::host_lost);
     follower_.before_step(axes_);

@@ -102,7 +102,7 @@ class ProbeService {
   Board& board_;
   ProbeWatch watch_;
   bool is_watching_ = false;
-  bool is_met_ = false;                              ///< the latest motion reached the state that it watched for
+  bool is_met_ = false;                              ///< during the latest motion the probe reached the expected state
   bool is_latched_ = false;                          ///< the hardware latched the position
   std::array<std::int64_t, Group::kAxes> met_at_{};  ///< counts
 };

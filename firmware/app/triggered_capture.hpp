@@ -76,7 +76,7 @@ class TriggeredCapture {
     m.counts = 0;
     until_next_ = 1;
     holdoff_ = request.holdoff;
-    was_so_ = true;  // passing the level needs a sample on the near side first
+    was_so_ = true;  // the level is passed only after a sample on its near side
     survived_ = false;
     m.phase = TriggerPhase::waiting;
   }

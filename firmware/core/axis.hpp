@@ -23,7 +23,7 @@ namespace firmware {
 ///
 ///   u(k) = Kc1 (xref(k) - x_hat(k)) - Kc2 w_hat(k) + feed-forward of wref(k ..)     (50), or with zero phase error
 ///        + friction(wref(k+1))                                                     if switched on, (19)
-///        + what compensation/ adds to it                                           if switched on
+///        + compensation (folder compensation/)                                     if switched on
 ///        + d_hat(k)                                                                if switched on
 ///
 /// Notch and low-pass (control_filter.hpp), each if switched on, filter everything except friction.
@@ -111,7 +111,7 @@ class Axis {
   /// Largest offset of the reference from the wanted position of the table, counts.
   constexpr std::int64_t largest_offset() const { return backlash_.largest_offset() + pitch_.largest_offset(); }
 
-  /// A failed sensor no longer opens the loop: the caller of the step sees telemetry().fault and decides.
+  /// From now on a failed sensor does not open the loop: the caller of the step sees telemetry().fault and decides.
   constexpr void leave_sensors_to_supervisor() { decides_on_sensors_ = false; }
 
   /// One control period without estimate and reference: outputs `volts` and reads the sensors that work; `velocity`
@@ -181,7 +181,8 @@ class Axis {
     return true;
   }
 
-  /// Stops a jog in time to end within these counts; call it before each step(). Moves are planned to end inside.
+  /// Stops a jog in time, so that it ends within these counts; call it before each step(). Moves are planned to end
+  /// inside.
   constexpr void keep_inside(std::int64_t min_counts, std::int64_t max_counts) {
     if (generator_.mode() != MotionMode::jog) return;
     const Increment velocity = generator_.jog_profile().run_out_velocity();
@@ -192,7 +193,7 @@ class Axis {
     if (room <= stopping_.counts(velocity, delay)) generator_.jog(0);
   }
 
-  /// Counts, from the velocity limit: if no end of travel is closer, keep_inside() does nothing.
+  /// Stopping distance from the velocity limit, counts: if no end of travel is closer, keep_inside() does nothing.
   constexpr std::int64_t farthest_stop() const { return farthest_stop_; }
 
   /// Slows down to standstill within the limits.
@@ -201,7 +202,7 @@ class Axis {
   /// All further stops, until the loop opens, use the fault deceleration.
   constexpr void brake_hard() { generator_.brake_hard(); }
 
-  /// The same after step_with(): continues with the whole reference.
+  /// Like stop(), after step_with(): the stop begins at the speed of the whole reference.
   constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }
 
   /// Where the table's reference will be kPreviewSamples from now; the next command to the axis starts from there.
@@ -391,7 +392,7 @@ class Axis {
     return Traits::times(reading.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
   }
 
-  /// Latches the first fault, and opens the loop unless the caller decides that. Always returns false.
+  /// Latches the first fault, and opens the loop unless the caller is to decide. Always returns false.
   [[gnu::noinline]] constexpr bool lose(AxisFault fault) {
     if (decides_on_sensors_ || !telemetry_.enabled) return latch(fault);
     if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
@@ -431,7 +432,7 @@ class Axis {
   ControlFilters<Scalar> filters_;
   DriveCompensation<Scalar> compensation_;
   PitchCorrection pitch_;
-  FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others
+  FrictionFeedforward<Scalar> friction_;  // its tables come last, so that one load reaches each of the other members
 };
 
 }  // namespace firmware

@@ -43,7 +43,7 @@ constexpr Refusal check_compensation(const CompensationParameters<Scalar>& c) {
   return is_crossing_time(c.backlash.crossing_samples) ? Refusal::none : Refusal::backlash_crossing;
 }
 
-/// Length per second^order as an increment per sample^order; 0 where it is out of range.
+/// Length per second^order as an increment per sample^order; 0 if it is out of range.
 template <typename Scalar>
 constexpr Increment motion(Scalar limit, Scalar count_length, Scalar sample_period_s, int order) {
   Scalar counts = limit / count_length;
@@ -58,7 +58,7 @@ template <typename Scalar>
 constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
   if (p.motion.velocity != 0 || p.motion.acceleration != 0 || p.motion.jerk != 0) return p.motion;
   using parameter_check::motion;
-  // A value out of range is refused here, too.
+  // This also refuses a value out of range.
   const Increment hard = motion(p.fault_deceleration, p.encoder_resolution, p.sample_period_s, 2);
   const Increment fault_deceleration =
       p.fault_deceleration > p.acceleration_limit && hard == 0 ? kMostMotion + 1 : hard;

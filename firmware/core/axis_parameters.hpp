@@ -52,7 +52,7 @@ struct AxisParameters {
   MotionLimits motion{};
 
   FilterParameters<Scalar> filters{};             ///< notch, low-pass; of the feedback and of reference feed-forward
-  CompensationParameters<Scalar> compensation{};  ///< last: no control period reads it here
+  CompensationParameters<Scalar> compensation{};  ///< comes last, because no control period reads it here
 };
 
 }  // namespace firmware

@@ -1,4 +1,4 @@
-// The units in which fixed point computes: every state is of the order of one, whatever the machine.
+// The units of fixed point: every state is of the order of one, whatever the machine.
 #pragma once
 
 #include "firmware/core/arithmetic/fixed_point.hpp"
@@ -35,8 +35,8 @@ struct FixedUnits {
         volts(Real(4096) * p.dac_resolution_V) {}
 };
 
-/// The same axis in fixed-point units. What does not fit stays at the limit of the range, and Axis::configure() refuses
-/// it as not finite. Telemetry is in these units too.
+/// The same axis in fixed-point units. A value that does not fit is set to the limit of the range, and
+/// Axis::configure() refuses it as not finite. Telemetry is in these units too.
 template <typename Real>
 constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   const FixedUnits<Real> unit(p);

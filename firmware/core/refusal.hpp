@@ -25,7 +25,7 @@ enum class Refusal : std::uint16_t {
   acceleration_limit = 129,        ///< likewise
   jerk_limit = 130,                ///< likewise
   jerk_time = 1 << 12 | 130,       ///< acceleration / jerk is so long that one ramp would pass 2^14 counts a sample
-  fault_deceleration = 131,        ///< outside the references' range, or reached so slowly as of jerk_time
+  fault_deceleration = 131,        ///< outside the references' range, or with too long a ramp, as for jerk_time
   following_error = 144,           ///< floor not above 0, or share below 0; either above its ceiling
   disagreement = 146,              ///< floor not above 0, share outside 0..1, or jump not above the floor; ceilings
   overspeed = 149,                 ///< not above the velocity limit and the encoder's steps, or above its ceiling
@@ -40,7 +40,7 @@ enum class Refusal : std::uint16_t {
   backlash_crossing = 226,         ///< on, and not 1..4096 samples
   homing = 241,           ///< not by an operator, and a velocity 0, or creep velocity or a distance not above 0
   amplifier_ready = 247,  ///< the ready input on, but no time for it; or a time below 0
-  brake_feedback = 248,   ///< a brake, but no tachometer that shows a dead encoder at rest
+  brake_feedback = 248,   ///< a brake, but no tachometer to detect a dead encoder at rest
   index_spacing = 251,    ///< below 0
   filters = 273,          ///< on, and not below 0.45 of the rate; or the loop is not stable with them
   pitch_crossing = 289,   ///< on, and not 1..4096 samples

@@ -1,5 +1,5 @@
 // One register of the chip: on the target a volatile word. In tests that emulate the chip (AXIS_REGISTERS_ANSWERED),
-// each access goes to the test, with the address that the processor would have put on its bus.
+// each access goes to the test, with the address of the bus access.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ using cortex_m::Register;
 class UartPort {
  public:
   void start() {
-    registers().BAUDDIV = 16;  // the least that is allowed; the emulator sends at once
+    registers().BAUDDIV = 16;  // the smallest allowed value; the emulator sends at once
     registers().CTRL = kTransmit | kReceive;
   }
 

@@ -11,7 +11,7 @@ namespace hal::pc {
 /// Present defects. All may occur at once; zero and false mean no defect.
 struct AxisDefects {
   bool encoder_dead = false;          ///< its wires are cut: the counter does not move, undetected
-  bool encoder_reported_bad = false;  ///< the same, but the input's monitor detects it
+  bool encoder_reported_bad = false;  ///< its wires are cut, and the input's monitor detects it
   bool encoder_swapped = false;       ///< both channels are interchanged: it counts the other way
   std::int32_t encoder_noise = 0;     ///< counts, evenly spread over +-noise at every reading
   std::int32_t encoder_lost = 0;      ///< lost counts
@@ -27,10 +27,10 @@ struct AxisDefects {
   bool unready = false;          ///< the amplifier's ready contact or its wire is open
   bool ready_stuck = false;      ///< that contact is welded
   bool enable_open = false;      ///< the amplifier does not see its enable
-  bool enable_stuck = false;     ///< it always sees an enable; only its power can be cut
-  bool amplifier_stuck = false;  ///< it gives the current of amplifier_stuck_code, even without an enable
+  bool enable_stuck = false;     ///< the amplifier always sees an enable; only its power can be cut
+  bool amplifier_stuck = false;  ///< the amplifier gives the current of amplifier_stuck_code, even without an enable
   std::int32_t amplifier_stuck_code = 0;
-  bool brake_stuck = false;           ///< it does not release
+  bool brake_stuck = false;           ///< the brake does not release
   std::int32_t amplifier_offset = 0;  ///< codes that it adds to its command while it drives
   bool positive_end_reached = false;
   bool negative_end_reached = false;
@@ -168,7 +168,7 @@ class FaultyAxis {
     enable_.apply();
   }
 
-  /// Advances the machine with the defects that act on it.
+  /// Advances the machine with its present defects.
   void advance(double duration_s) {
     enable_.apply();
     if (defects.dac_stuck || defects.amplifier_stuck || defects.amplifier_offset != 0) dac_.write(dac_.commanded());

@@ -73,7 +73,7 @@ class SimulatedAxis {
       return {static_cast<std::uint32_t>(counts), true, passed < -1 || passed > 1};
     }
 
-    /// A probe's edge occurred at these counts.
+    /// Tells that a probe's edge occurred at these counts.
     void latch(std::int64_t counts) { latched_ = {static_cast<std::uint32_t>(counts), true}; }
     EncoderReading read_latch() {
       const EncoderReading latched = latched_;

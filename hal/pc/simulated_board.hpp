@@ -15,7 +15,7 @@
 
 namespace hal::pc {
 
-/// Time passes in advance() only, which calls nothing of the board's program.
+/// Only advance() lets time pass; it calls nothing of the board's program.
 template <std::size_t axes>
 class SimulatedBoardOf {
  public:
@@ -28,8 +28,8 @@ class SimulatedBoardOf {
     ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
-  /// Queues as many reports as TinyUSB's port, and has the F405's four sectors, but only as large as a set can need.
-  /// Axis n has the noise of seed + n.
+  /// Queues as many reports as TinyUSB's port. Has four sectors like the F405, but only as large as a parameter set can
+  /// need. The noise of axis n has the seed `seed` + n.
   SimulatedBoardOf(const Drives& drives, std::uint64_t seed, const Wiring& wiring = {})
       : plants_(make_plants(drives, seed, std::make_index_sequence<axes>())),
         axes_(make_axes(wiring, std::make_index_sequence<axes>())) {}
@@ -44,7 +44,7 @@ class SimulatedBoardOf {
   SimulatedClock& clock() { return clock_; }
   SimulatedUsb& usb() { return usb_; }
   SimulatedFlash& parameter_flash() { return flash_; }
-  /// The program's place and two slots, as large as the F405's.
+  /// The place where programs run and two slots, as large as the F405's.
   SimulatedFlash& image_flash() { return image_flash_; }
 
   void set_control_rate(std::uint32_t rate_Hz) { control_period_us_ = 1'000'000 / rate_Hz; }
@@ -90,7 +90,7 @@ class SimulatedBoardOf {
       plants_[i].advance(duration_s);
     }
     bool touches = false;
-    double first = 1.0, last = 0.0;  // changes, as shares of this time
+    double first = 1.0, last = 0.0;  // times of the edges, as shares of `duration_s`
     for (const SimulatedSurface& one : surfaces_) {
       const double to = plants_[one.axis].table_travel();
       touches = touches || one.touches(to);

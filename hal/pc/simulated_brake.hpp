@@ -9,8 +9,8 @@ namespace hal::pc {
 
 struct BrakeWiring {
   double deceleration = 0.0;     ///< deceleration in addition to friction, rad/s^2 (m/s^2); 0: no brake
-  double release_time_s = 0.05;  ///< from the current on until it is released
-  double apply_time_s = 0.05;    ///< from the current off until it holds
+  double release_time_s = 0.05;  ///< from switching the current on until the brake is released
+  double apply_time_s = 0.05;    ///< from switching the current off until the brake holds
 };
 
 /// Initially applied, for a long time already. Either its whole torque acts or none.

@@ -1,5 +1,5 @@
-// Parameter flash in memory, with the microcontroller's rules: ones become zeros, only an erase brings them back. Power
-// can be cut at any operation.
+// Parameter flash in memory, with the microcontroller's rules: programming turns ones into zeros; only an erase
+// restores ones. Power can be cut at any operation.
 #pragma once
 
 #include <algorithm>

@@ -50,7 +50,7 @@ class SimulatedSupply {
   bool is_low_ = false;
 };
 
-/// A wall across an axis: the probe touches it there and beyond.
+/// A wall across an axis: the probe touches it at this travel and beyond.
 struct SimulatedSurface {
   std::size_t axis = 0;
   double travel = 0.0;      ///< mm (m)
@@ -58,7 +58,7 @@ struct SimulatedSurface {
   bool touches(double at) const { return is_upwards ? at >= travel : at <= travel; }
 };
 
-/// Closes on contact.
+/// Its contact closes when the probe touches.
 class SimulatedProbe {
  public:
   bool is_closed() const { return is_closed_; }

@@ -8,7 +8,7 @@
 
 namespace hal::pc {
 
-/// send, receive and is_configured are the board's end. Reports wait, they are never dropped.
+/// send, receive and is_configured are the board's end. Reports wait and are never dropped.
 class SimulatedUsb {
  public:
   /// Number of reports that wait in each direction before a sender is refused.

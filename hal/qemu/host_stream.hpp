@@ -1,5 +1,5 @@
-// A byte stream between the emulated processor and a program beside the emulator. QEMU's serial ports receive one byte
-// at a time, and each byte waits for the emulator's other work; files transfer any number at once.
+// A byte stream between the emulated processor and a program on the emulator's computer. QEMU's serial ports receive
+// one byte at a time, and each byte waits for the emulator's other work; files transfer any number at once.
 #pragma once
 
 #include <array>

@@ -69,7 +69,7 @@ class HostFile {
     return transfer(Semihosting::write, bytes.data(), bytes.size());
   }
 
-  /// For a file, not for a FIFO.
+  /// Only for a file, not for a FIFO.
   bool skip_to_end() const {
     const std::int32_t length = semihosting(Semihosting::file_length, &handle_);
     const std::int32_t block[2] = {handle_, length};

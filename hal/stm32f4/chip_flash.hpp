@@ -19,8 +19,8 @@ struct ParameterSectors {
   static constexpr std::uint32_t count_of_chip(std::size_t) { return 1; }
 };
 
-/// The place where programs run, sectors 1 to 4 of 16, 16, 16 and 64 KB, and two slots that keep images, sectors 5 and
-/// 6, as much of each as the place has.
+/// The place where programs run, sectors 1 to 4 of 16, 16, 16 and 64 KB, and two slots that keep images: as many bytes
+/// of sectors 5 and 6.
 struct ImageSectors {
   static constexpr std::uintptr_t kFirstAddress = 0x08004000;
   static constexpr std::size_t kCount = 3, kSize = 112 * 1024;
@@ -96,7 +96,7 @@ class ChipFlash {
   void unlock() {
     registers_.KEYR = FlashInterface::kKey1;
     registers_.KEYR = FlashInterface::kKey2;
-    registers_.SR = registers_.SR & FlashInterface::kErrors;  // ones written back clear
+    registers_.SR = registers_.SR & FlashInterface::kErrors;  // writing ones clears them
   }
 
   FlashResult program_word(std::byte* cell, std::span<const std::byte> bytes) {
@@ -109,7 +109,7 @@ class ChipFlash {
     return finish();
   }
 
-  /// An erase takes at most 2 s (datasheet, table 40); some 10^8 polls at 168 MHz take longer.
+  /// An erase takes at most 2 s (datasheet, table 40); 10^8 polls at 168 MHz take longer.
   FlashResult finish() {
     for (std::uint32_t poll = 0; poll < 100'000'000 && (registers_.SR & FlashInterface::kBusy) != 0; ++poll) continue;
     const bool bad = (registers_.SR & (FlashInterface::kErrors | FlashInterface::kBusy)) != 0;

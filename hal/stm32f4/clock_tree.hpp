@@ -13,7 +13,8 @@ inline constexpr std::uint32_t kApb1TimerClock_Hz = 84'000'000;  // TIM2 to TIM5
 
 namespace clock_setup {
 
-/// A crystal starts within 2 ms (datasheet, table 33), 32,000 instructions at 16 MHz; this is ten times as many polls.
+/// A crystal starts within 2 ms (datasheet, table 33), 32,000 instructions at 16 MHz; these polls take ten times as
+/// long.
 inline constexpr int kMostPolls = 400'000;
 
 inline bool wait_for(Register& flags, std::uint32_t mask, std::uint32_t wanted) {

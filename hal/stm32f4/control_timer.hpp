@@ -7,7 +7,7 @@
 namespace hal::stm32f4 {
 
 /// The scan of both tachometers begins with the period (TachometerScan). In its middle, compare channels 1 and 2
-/// request the transfers of the encoders' counters (EncoderTimer). So position and velocity are of the same instant.
+/// request the transfers of the encoders' counters (EncoderTimer). So position and velocity belong to the same instant.
 class ControlTimer {
  public:
   explicit constexpr ControlTimer(Timer& timer) : timer_(timer) {}

@@ -7,7 +7,7 @@
 
 namespace hal::stm32f4 {
 
-/// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse, channel 4 at the
+/// Channels 1 and 2 count every edge of A and B. Channel 3 captures the counter at the index pulse, channel 4 at the
 /// trigger of the probe's timer (ProbeTimer). The hardware counts all 32 bits, so no overflow needs an interrupt.
 ///
 /// A stream of DMA1 copies the counter at a compare event of the control timer. So the control interrupt's delay does
@@ -48,7 +48,7 @@ class EncoderTimer {
   }
 
  private:
-  /// 10.3.17: off, set up, on. Its flags are those of the reset.
+  /// Switches the stream off, sets it up, and switches it on (10.3.17). Its flags are as after reset.
   void start_latch() {
     latch_.PAR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&registers_.CNT));
     latch_.M0AR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&latched_));

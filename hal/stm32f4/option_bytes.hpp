@@ -6,8 +6,8 @@
 
 namespace hal::stm32f4 {
 
-/// The reset's threshold in hundredths of a volt: 270 (level 3), 240, 210, or 0 while it is off, as the chip is
-/// delivered. Below 2.7 V the chip may not run at 168 MHz, nor program words of flash.
+/// The reset's threshold in hundredths of a volt: 270 (level 3), 240, 210, or 0 if it is off, as on a new chip. Below
+/// 2.7 V the chip may not run at 168 MHz, nor program words of flash.
 inline std::uint32_t brown_out_threshold(const FlashInterface& flash) {
   switch (flash.OPTCR & FlashInterface::kBrownOutField) {
     case FlashInterface::kBrownOutLevel3:

@@ -22,7 +22,7 @@ class ProbeTimer {
   bool is_closed() { return !pin_.read(); }
 
   void arm(bool closes) {
-    registers_.SMCR = Timer::kFromInput1;  // nothing starts it while its edge changes
+    registers_.SMCR = Timer::kFromInput1;  // no trigger while the edge's polarity changes
     registers_.CR1 = 0;
     registers_.CCER = closes ? Timer::kInput1Falls : 0;
     registers_.SMCR = Timer::kFromInput1 | Timer::kStartOnTrigger;

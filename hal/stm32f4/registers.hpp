@@ -40,7 +40,7 @@ struct Rcc {
                                  kWindowWatchdog = 1u << 11, kPower = 1u << 28;                             // APB1ENR
   static constexpr std::uint32_t kUsart1 = 1u << 4, kAdc1 = 1u << 8, kSpi1 = 1u << 12, kSyscfg = 1u << 14;  // APB2ENR
   // AHB1RSTR to APB2RSTR, 7.3.5 to 7.3.9: every peripheral that a boot ROM or an earlier program may have used. The
-  // bits of PWR (APB1) and SYSCFG (APB2) stay out: neither has settings that could disturb.
+  // bits of PWR (APB1) and SYSCFG (APB2) are left out: their settings do no harm.
   static constexpr std::uint32_t kAhb1Resets = 0x2260'11FFu, kAhb2Resets = 0x0000'00F1u, kApb1Resets = 0x26FE'C9FFu,
                                  kApb2Resets = 0x0007'1933u;
   static constexpr std::uint32_t kRemoveResetFlags = 1u << 24;  // CSR, 7.3.21

@@ -9,7 +9,7 @@
 
 namespace hal::stm32f4 {
 
-inline constexpr std::uint32_t kTachometerSamples = 4;  ///< of each channel a period, summed: half the noise
+inline constexpr std::uint32_t kTachometerSamples = 4;  ///< per channel and period; their sum halves the noise
 
 /// The conversions of one period, x y x y x y x y. Written by DMA.
 using TachometerSamples = std::array<volatile std::uint16_t, 2 * kTachometerSamples>;
@@ -85,7 +85,7 @@ class TachometerScan {
   static constexpr std::uint32_t kOn =
       Adc::kOn | Adc::kDma | Adc::kDmaContinues | Adc::kTriggerTimer3 | Adc::kTriggerRising;
 
-  /// DMA2 stream 0, channel 0: ADC1 (table 43). 10.3.17: off, flags cleared, set up, on.
+  /// DMA2 stream 0, channel 0: ADC1 (table 43). Off, flags cleared, set up, on (10.3.17).
   void begin_transfer() {
     DmaStream& stream = dma_.stream[0];
     stream.CR = stream.CR & ~DmaStream::kEnable;

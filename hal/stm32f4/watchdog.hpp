@@ -7,12 +7,12 @@
 
 namespace hal::stm32f4 {
 
-/// Runs on an oscillator of its own: finds a program that has stopped, and one whose clock has. RM0090, section 21.3.
+/// Runs on an oscillator of its own, so it detects a stopped program and a stopped clock. RM0090, section 21.3.
 class Watchdog {
  public:
   explicit constexpr Watchdog(IndependentWatchdog& registers) : registers_(registers) {}
 
-  /// 1..32760 ms nominally; the oscillator has 17 to 47 kHz instead of 32 (datasheet, table 35).
+  /// 1..32760 ms nominally; the oscillator has 17 to 47 kHz instead of 32 kHz (datasheet, table 35).
   void start(std::uint32_t timeout_ms) {
     registers_.KR = IndependentWatchdog::kStart;
     allow(timeout_ms);
@@ -21,7 +21,7 @@ class Watchdog {
   /// Changes the time-out, also while it runs: for work that stalls the processor.
   void allow(std::uint32_t timeout_ms) {
     constexpr std::uint32_t kBy16 = 2, kBy256 = 6, kMostTicks = 0xFFF;
-    const bool is_long = timeout_ms * 2 > kMostTicks;  // 32 kHz / 16 are 2 ticks a millisecond, / 256 an eighth
+    const bool is_long = timeout_ms * 2 > kMostTicks;  // 32 kHz / 16: 2 ticks per ms; 32 kHz / 256: 1/8 tick per ms
     registers_.KR = IndependentWatchdog::kUnlock;
     registers_.PR = is_long ? kBy256 : kBy16;
     registers_.RLR = std::min(is_long ? timeout_ms / 8 : timeout_ms * 2, kMostTicks);
@@ -43,8 +43,8 @@ class PeriodWatchdog {
  public:
   explicit constexpr PeriodWatchdog(WindowWatchdog& registers) : registers_(registers) {}
 
-  /// Fed every 16 to 20 ms, if it is called every 50 us to 4 ms. A tick is 4096 * 8 clocks, 0.78 ms: too early is
-  /// before 9.4 ms, too late after 30 ms. Not while period_passed() may be called.
+  /// period_passed() feeds it every 16 to 20 ms, if called every 50 us to 4 ms. A tick is 4096 * 8 clocks, 0.78 ms:
+  /// feeding before 9.4 ms is too early, after 30 ms too late. Do not call start() while period_passed() may be called.
   void start() {
     registers_.CFR = WindowWatchdog::kBy8 | kEarliest;
     registers_.CR = WindowWatchdog::kRun | kFrom;
@@ -52,7 +52,7 @@ class PeriodWatchdog {
     runs_ = true;
   }
 
-  /// Once a period, with its length.
+  /// Call it once per period, with the period's length.
   void period_passed(std::uint32_t period_us) {
     passed_us_ += period_us;
     if (!runs_ || passed_us_ < kFed_us) return;

@@ -17,7 +17,7 @@ constexpr std::uint16_t kDeviceRelease = 0x0100;  // binary-coded 1.00
 constexpr std::uint16_t kEnglish = 0x0409;
 constexpr std::uint8_t kConfigurationSize = 41;
 constexpr std::uint8_t kSelfPowered = 0xC0;  // USB 2.0, table 9-10: bit 7 is always set
-constexpr std::uint8_t kCurrent_2mA = 50;    // 100 mA: the most that a board with its own supply needs while starting
+constexpr std::uint8_t kCurrent_2mA = 50;    // 100 mA: the maximum of a self-powered board while starting
 constexpr std::uint8_t kInterval_ms = 1;
 
 constexpr std::uint8_t low(std::size_t value) { return static_cast<std::uint8_t>(value & 0xFF); }

@@ -76,7 +76,7 @@ void reset() {
   function.sends = false;
 }
 
-/// Returns the length of what it takes of the configuration; 0 refuses it.
+/// Returns the number of bytes of the configuration that it has used; 0 refuses the interface.
 std::uint16_t open(std::uint8_t port, const tusb_desc_interface_t* interface, std::uint16_t available) {
   if (interface->bInterfaceClass != TUSB_CLASS_HID) return 0;
   const std::uint8_t* descriptor = tu_desc_next(interface);

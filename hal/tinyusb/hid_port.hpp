@@ -18,8 +18,7 @@ class HidPort {
   /// line up, and is not configured. Assumed present before the first call.
   void attach(bool is_present);
 
-  /// Handles the controller's events since the last call: calls back, answers requests of the control pipe, moves
-  /// reports.
+  /// Handles the controller's events since the last call: answers requests of the control pipe, moves reports.
   void poll();
 
   /// Only for the controller's interrupt.

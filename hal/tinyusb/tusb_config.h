@@ -14,5 +14,5 @@
 // Events that wait between the interrupt and hal::tinyusb::poll: both endpoints, the control pipe, the bus.
 #define CFG_TUD_TASK_QUEUE_SZ 16
 
-// hid_function.cpp stands where TinyUSB's own HID class would.
+// hid_function.cpp replaces TinyUSB's own HID class.
 #define CFG_TUD_HID 1

@@ -1,5 +1,5 @@
-// The clock for TinyUSB's delays on a computer. No function of this project waits, but without optimisation the linker
-// keeps the delays.
+// The clock for TinyUSB's delays on a computer. No function of this project calls them, but without optimisation the
+// linker keeps them.
 #include <tusb.h>
 
 #include <chrono>

@@ -26,8 +26,8 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint8_t kPort = 0;
 constexpr std::uint8_t kDirectionIn = TUSB_DIR_IN_MASK;
 using Clock = std::chrono::steady_clock;
-constexpr int kFramesToCatchUp = 8;              // this computer may be late, a bus is never late
-constexpr std::size_t kLongestTransfer = 65536;  // far above anything that a HID device is asked for
+constexpr int kFramesToCatchUp = 8;              // the computer may be late; a real bus never is
+constexpr std::size_t kLongestTransfer = 65536;  // far above any transfer of a HID device
 
 /// A transfer for which the host waits.
 struct Transfer {
@@ -284,7 +284,7 @@ bool dcd_edpt_xfer(std::uint8_t, std::uint8_t address, std::uint8_t* buffer, std
   return true;
 }
 
-/// vhci-hcd keeps addresses to itself; another host may send them.
+/// vhci-hcd does not forward addresses; another host may.
 void dcd_set_address(std::uint8_t port, std::uint8_t) {
   std::uint8_t nothing = 0;
   dcd_edpt_xfer(port, TUSB_DIR_IN_MASK, &nothing, 0);

@@ -11,8 +11,8 @@ namespace hal::usbip {
 /// One device per program, because TinyUSB has one stack per program.
 class UsbipController {
  public:
-  /// Takes over the socket and shows `port`, which must have been started, the bus reset that a new host begins with.
-  /// An endpoint moves one report per `frame`, as on a real bus; vhci-hcd alone would transfer as fast as the computer
+  /// Takes over the socket and signals to `port`, which must have been started, the bus reset of a new host. An
+  /// endpoint moves one report per `frame`, as on a real bus; vhci-hcd alone would transfer as fast as the computer
   /// can.
   UsbipController(int socket, tinyusb::HidPort& port, std::chrono::microseconds frame = std::chrono::milliseconds(1));
   UsbipController(const UsbipController&) = delete;

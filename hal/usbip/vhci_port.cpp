@@ -19,7 +19,7 @@ constexpr const char* kController = "/sys/devices/platform/vhci_hcd.0/";
 // drivers/usb/usbip/usbip_common.h and linux/usb/ch9.h.
 constexpr int kPortIsFree = 4;
 constexpr int kFullSpeed = 2;
-constexpr int kDeviceIdentifier = 1 << 16 | 2;  // bus and device number that a real server would have: any will do
+constexpr int kDeviceIdentifier = 1 << 16 | 2;  // bus and device number of a real server; any value works
 
 [[noreturn]] void fail(int code, const std::string& what) {
   throw std::system_error(code, std::generic_category(), what);

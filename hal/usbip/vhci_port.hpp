@@ -6,7 +6,7 @@
 namespace hal::usbip {
 
 /// Connects a full-speed device; returns the socket at which it must be served. Throws std::system_error: ENODEV
-/// without the module, EACCES without the right (root's) to use it, EBUSY when all ports are taken.
+/// without the module, EACCES without root's rights, EBUSY when all ports are taken.
 int plug_into_vhci();
 
 }  // namespace hal::usbip

@@ -26,7 +26,7 @@ const EffectInfo backlash{
                     .lower = 0.0,
                     .upper = 5.0,
                     .scale = Scale::millimetre,
-                    .starts = {0.01, 0.02, 0.04, 0.08, 0.16}},  // a gap of the wrong size is worse than none
+                    .starts = {0.01, 0.02, 0.04, 0.08, 0.16}},  // a gap of the wrong size fits worse than no gap
                    {.id = "resonance",
                     .rotary_key = "resonance_Hz",
                     .linear_key = "resonance_Hz",

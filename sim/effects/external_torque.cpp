@@ -10,7 +10,7 @@ namespace {
 
 void install_external_torque(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
-  // A sample counts by the part of it that the torque acts in: a fit can then move the edges by less than a sample.
+  // The torque is weighted by the part of the sample in which it acts: a fit can move the edges by less than a sample.
   const double period_s = data.sample_period_s;
   drive.load_effort.push_back([=](double t_s, double) {
     return torque * std::max(0.0, std::min(t_s + period_s, end) - std::max(t_s, start)) / period_s;

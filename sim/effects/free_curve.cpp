@@ -1,4 +1,4 @@
-// A curve that no formula gives.
+// A curve without a formula.
 #include <algorithm>
 
 #include "sim/curve.hpp"

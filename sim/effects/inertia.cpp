@@ -21,7 +21,7 @@ const EffectInfo inertia{
                     .rotary_key = "J_kg_m2",
                     .linear_key = "M_kg",
                     .doc = "total moving inertia, referred to the motor",
-                    .lower = 1e-11,  // the rotors of the smallest motors have some 5e-10
+                    .lower = 1e-11,  // rotors of the smallest motors: about 5e-10
                     .upper = 1e6,
                     .scale = Scale::inertia,
                     .starts = {1}}},

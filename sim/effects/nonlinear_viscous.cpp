@@ -25,7 +25,7 @@ void install_nonlinear_viscous(const EffectEntry& entry, const DataSheet& data, 
   const double exponent = entry.has("exponent") ? entry.at("exponent") : 1.0;
   const double per_reference = 1.0 / reference;
   drive.sliding_friction.push_back([=, power = Power(exponent)](int, double speed) {
-    // A law that flattens is infinitely steep at rest; below a thousandth of the reference its slope is held.
+    // A curve with p < 1 is infinitely steep at rest; below a thousandth of the reference its slope is kept constant.
     const double ratio = speed * per_reference, steepest = std::max(ratio, 1e-3);
     const double at_steepest = coefficient * power(steepest);
     const double effort = ratio == steepest ? at_steepest : (ratio > 0.0 ? coefficient * power(ratio) : 0.0);

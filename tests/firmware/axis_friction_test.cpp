@@ -1,4 +1,4 @@
-// The control law around the paper's drives with their friction, sensors and converter.
+// The control law with the paper's drives, their friction, sensors and converter.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ TEST_P(FrictionLoop, JogRunsAtTheSpeedAskedForAndTheObserverSeesTheFriction) {
   EXPECT_EQ(loop.axis.telemetry().fault, firmware::AxisFault::none);
 }
 
-/// Worst error of true position against the reference in a move of 20 mm and back, and the error left at the end.
+/// Largest error of the true position in a move of 20 mm and back, and the error at the end.
 struct MoveErrors {
   double worst_mm = 0.0;
   double left_mm = 0.0;

@@ -1,4 +1,4 @@
-// The control law around a linear drive: poles, tracking, resolution, faults, switches.
+// The control law with a linear drive: poles, tracking, resolution, faults, switches.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

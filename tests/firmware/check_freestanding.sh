@@ -1,6 +1,6 @@
 #!/bin/sh
 # Usage: check_freestanding.sh OBJECT NM OBJDUMP PROCESSOR
-# Fails when the object needs anything but the compiler's own memory functions, or computes in double precision.
+# Fails when the object calls anything but the compiler's own memory functions, or computes in double precision.
 set -eu
 object=$1 nm=$2 objdump=$3 processor=$4
 

@@ -36,7 +36,7 @@ struct Circle {
   }
   double off(double x, double y) const { return std::abs(std::hypot(x - radius, y) - radius); }
 
-  /// `given`: the travels in units until now, which become those to this node.
+  /// `given`: travels in units up to the previous node; updated to this node.
   firmware::PathNode<2> node(double sample, double piece, const firmware::PathUnits& units, bool last,
                              std::array<std::int64_t, 2>& given) const {
     firmware::PathNode<2> made;

@@ -66,8 +66,8 @@ TEST_F(PreslidingFriction, ReversesOverTheTravelWhateverTheSpeed) {
   for (const float speed : {0.1f, 1.0f}) {
     contact.configure({true, kStiffness, 0.0f}, friction, kPeriod_s);
     slide(speed, 0.7f, 1.0);
-    // It stops short where a sample's share of the rest, sigma0 dx / F, is below half a unit in the last place; 0.7 as
-    // a float is off by less than that.
+    // It stops short of F once the change per sample, sigma0 dx / F of the residual, is below half a unit in the last
+    // place; the rounding of 0.7 to float is smaller.
     const double half_unit_V = std::ldexp(1.0, -25);
     EXPECT_NEAR(number(last_V), 0.7, half_unit_V / (number(speed) * 1e-3 * 50.0 / 0.7) + half_unit_V) << "long since";
     // dv/dx = sigma0 (1 - v/F) backwards from +0.7 V: F = -0.5 V, so v = -0.5 + 1.2 exp(-x sigma0 / 0.5).

@@ -30,8 +30,8 @@ class ControlFilter : public testing::Test {
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(ControlFilter, Scalars);
 
-/// Against the transfer function of the continuous filter at the prewarped frequency: a forgotten prewarping shifts the
-/// notch by a twentieth here, a swapped coefficient leaves none.
+/// Compares with the transfer function of the continuous filter at the prewarped frequency. Without prewarping the
+/// notch would shift by a twentieth; with swapped coefficients there would be no notch.
 TYPED_TEST(ControlFilter, LeavesWhatItsNumbersSay) {
   constexpr double kPeriod_s = 1e-3, kNotch_Hz = 120.0, kDamping = 0.3, kDepth = 0.2, kLowPass_Hz = 180.0;
   firmware::ParameterValues values = paper_values();
@@ -107,7 +107,7 @@ double largest_pole(const firmware::AxisParameters<float>& p) {
   return A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// Every unstable one is refused; of those with a pole well inside the circle, none.
+/// Every unstable loop is refused; a loop whose poles are well inside the circle is not.
 TYPED_TEST(ControlFilter, IsRefusedWhereTheLoopDoesNotStandIt) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -129,8 +129,8 @@ TYPED_TEST(ControlFilter, IsRefusedWhereTheLoopDoesNotStandIt) {
   EXPECT_GT(accepted, 50);
 }
 
-/// Bounded algebra in single precision: as right at 20 kHz, where a slow loop's poles crowd at 1. The paper's x axis as
-/// a continuous drive, sampled as fast; its loop placed at 8 Hz, damped by 0.8.
+/// Bounded algebra in single precision is also correct at 20 kHz, where the poles of a slow loop are close to 1. The
+/// paper's x axis as a continuous drive, sampled as fast; its loop placed at 8 Hz, damped by 0.8.
 TEST(ControlFilterAtAFastRate, IsJudgedAsInDoublePrecision) {
   constexpr double kPeriod_s = 5e-5, kLoop_Hz = 8.0, kDamping = 0.8;
   const double pole = -std::log(kPaperX.Ad22) / 1e-3, gain = kPaperX.Bd2 / (1.0 - kPaperX.Ad22) * pole;

@@ -201,7 +201,7 @@ TEST_F(Sequence, AnAxisThatGainsSpeedAfterTheDropHasItsPowerCut) {
   EXPECT_TRUE(axis.axis.must_cut_power());
 }
 
-/// The watch alone, at 1 kHz; speeds in multiples of what it lets an axis gain.
+/// The monitor alone, at 1 kHz; speeds in multiples of the allowed increase.
 class DropWatch : public testing::Test {
  protected:
   explicit DropWatch(int brake = 0) {
@@ -213,7 +213,7 @@ class DropWatch : public testing::Test {
     watch_.configure(p);
     watch_.begin();
   }
-  /// Whether it finds the axis driven within so many samples.
+  /// Whether it detects within this many samples that the axis is driven.
   template <typename Speed>
   bool finds(int samples, Speed speed) {
     bool found = false;
@@ -282,7 +282,7 @@ TEST_F(Sequence, AReadyInputWithoutATimeIsRefused) {
   EXPECT_EQ(axis.configure(p), firmware::Refusal::amplifier_ready);
 }
 
-/// Comes in whenever it is let in.
+/// Runs whenever it is enabled.
 struct ControlInterrupt {
   ControlInterrupt() = default;
   ControlInterrupt(const ControlInterrupt&) = delete;
@@ -295,7 +295,7 @@ struct ControlInterrupt {
   static inline std::vector<std::int64_t> seen;
 };
 
-/// Catches a control law that computes with one half of its parameters new.
+/// Catches a control law that computes with a mixture of old and new parameters.
 TEST_F(Sequence, AnAxisStandsAsideWhileItTakesParameters) {
   DrivenAxis axis(parameters(false, false));
   EXPECT_TRUE(axis.axis.disable());

@@ -28,7 +28,7 @@ class DrivenAxis {
     axis.step(outer);
     run_on(1);
   }
-  /// The drive alone, with the last word.
+  /// Advances only the drive, with the last command.
   void run_on(int periods) {
     for (int k = 0; k < periods; ++k) {
       const PaperAxis& drive = kPaperX;

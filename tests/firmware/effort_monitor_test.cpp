@@ -1,4 +1,4 @@
-// Expected motion from the command against the encoder, on drives that respond and drives that do not.
+// The encoder compared with the motion expected from the command, on drives that respond and drives that do not.
 #include "firmware/core/supervision/effort_monitor.hpp"
 
 #include <gtest/gtest.h>
@@ -142,7 +142,7 @@ TEST(SwingMonitor, FindsAnUnstableLoopThatNeverSaturatesForLong) {
   EXPECT_EQ(watch_feedback(1000, [](int k) { return 5.0 * std::sin(0.25 * k); }), AxisFault::limit_cycle) << "40 Hz";
 }
 
-/// Taking the slow part away makes the fastest swing larger by a sixteenth: 2.5 V / (1 + 1/16) = 2.35 V.
+/// Removing the slow part increases the fastest oscillation by a sixteenth: 2.5 V / (1 + 1/16) = 2.35 V.
 TEST(SwingMonitor, TripsAtItsThreshold) {
   const auto swing = [](double rms) { return [rms](int k) { return k % 2 == 0 ? rms : -rms; }; };
   EXPECT_EQ(watch_feedback(5000, swing(2.3)), AxisFault::none);
@@ -150,7 +150,7 @@ TEST(SwingMonitor, TripsAtItsThreshold) {
 }
 
 TEST(SwingMonitor, BearsWhatLoadsAndReversalsAsk) {
-  EXPECT_EQ(watch_feedback(5000, [](int) { return 9.0; }), AxisFault::none) << "a load that comes at once and stays";
+  EXPECT_EQ(watch_feedback(5000, [](int) { return 9.0; }), AxisFault::none) << "a sudden constant load";
   EXPECT_EQ(watch_feedback(5000, [](int k) { return k / 100 % 2 == 0 ? 2.0 : -2.0; }), AxisFault::none) << "friction";
 }
 

@@ -45,7 +45,7 @@ class Excitation : public testing::Test {
         .travel_counts = 1000, .margin_counts = 0, .speed = 1000, .drive_velocity = {}, .volts = volts<Scalar>(10)};
     plan.samples = 100'000;
   }
-  /// What the converter puts out.
+  /// Output of the converter.
   std::vector<double> play(std::size_t samples) {
     firmware::DacConversion<Scalar> dac;
     dac.configure(volts<Scalar>(kStep_V), volts<Scalar>(10));
@@ -71,9 +71,9 @@ double amplitude_of(const std::vector<double>& signal, std::size_t period, std::
   return 2.0 * std::abs(sum) / static_cast<double>(period);
 }
 
-/// Catches phases that do not begin anew (a period of 1000 is no part of 2^32), a wrong sine, amplitudes in a wrong
-/// unit, and a scalar too coarse. Between the lines only the converter's rounding may be left: what it does to the sum
-/// of the lines in double precision.
+/// Catches phases that do not restart (a period of 1000 does not divide 2^32), a wrong sine, amplitudes in a wrong
+/// unit, and a scalar that is too coarse. Between the lines only the converter's rounding of the sum of the lines may
+/// remain.
 TYPED_TEST(Excitation, AMultisineHasItsLinesAndNothingBetweenThem) {
   constexpr std::size_t kPeriod = 1000;
   const std::vector<std::uint32_t> lines = {1, 3, 7, 11, 13, 19, 27, 41, 63, 95, 141, 211, 315};
@@ -111,8 +111,8 @@ TYPED_TEST(Excitation, AMultisineHasItsLinesAndNothingBetweenThem) {
   }
 }
 
-/// Ten seconds at 20 kHz, of which the slowest line takes all. Catches oscillators that gain, lose or drift, and a step
-/// that is too coarse for a slow line.
+/// Ten seconds at 20 kHz, one period of the slowest line. Catches oscillators whose amplitude or frequency drifts, and
+/// a step that is too coarse for a slow line.
 TYPED_TEST(Excitation, ALongPeriodIsAsExactAtItsEnd) {
   constexpr std::uint32_t kPeriod = 200'000;
   constexpr std::array<std::uint32_t, 4> kLines = {1, 77, 9'999, 79'999};
@@ -124,7 +124,7 @@ TYPED_TEST(Excitation, ALongPeriodIsAsExactAtItsEnd) {
                            static_cast<std::uint32_t>(std::llround(std::ldexp(kLines[i], 32) / kPeriod)),
                            static_cast<std::uint32_t>(i * 0x1F3D5B79u)};
   this->generator.start(this->plan);
-  double most = 0.1 * kStep_V;  // what the words of the steps, of 2^-31, add up to
+  double most = 0.1 * kStep_V;  // accumulated rounding of the steps' words, 2^-31 each
   for (const std::uint32_t line : kLines)
     most += 0.5 * kPeriod * std::ldexp(1.0, -30) / std::cos(std::numbers::pi * line / kPeriod);
   EXPECT_LT(most, 2.5 * kStep_V);
@@ -166,7 +166,7 @@ TYPED_TEST(Excitation, LevelsLastTheirTimeOrUntilTheyAreToTurn) {
   for (int k = 0; k < 10; ++k) EXPECT_NEAR(in_volts<TypeParam>(this->generator.next(k == 5)), expected[k], 1e-3) << k;
 }
 
-/// A ramp that went on from where it was would hold the axis in motion long after it broke away.
+/// A ramp that continued from its present value would keep the axis moving long after breakaway.
 TYPED_TEST(Excitation, ARampBeginsAtNothingAgainTheOtherWay) {
   this->plan.kind = ExcitationKind::ramp;
   this->plan.amplitude = volts<TypeParam>(3.0);
@@ -207,7 +207,7 @@ TYPED_TEST(Excitation, WhatMakesNoSenseIsImpossible) {
   wanted.kind = ExcitationKind::train;
   EXPECT_FALSE(is_possible(wanted)) << "without levels";
   wanted.count = 1;
-  EXPECT_FALSE(is_possible(wanted)) << "a level of no time";
+  EXPECT_FALSE(is_possible(wanted)) << "a level without duration";
   wanted.entry[0].first = 1;
   EXPECT_TRUE(is_possible(wanted));
   wanted.box.travel_counts = 0;

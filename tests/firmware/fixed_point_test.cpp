@@ -1,4 +1,4 @@
-// Fixed point compared with double precision, and with all inputs that could make it overflow.
+// Fixed point compared with double precision, and tested with all inputs that could make it overflow.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -117,8 +117,8 @@ AxisParameters<double> random_axis() {
   const firmware::FixedUnits<double> unit(p);
   const double feedback_gain = p.Kc[1] * unit.velocity / unit.volts;
   const double most_counts = 600.0 * std::min(1.0, 1.0 / feedback_gain);
-  // Motion that the drive can follow: half its speed and acceleration at 10 V. Else the position error grows without
-  // end.
+  // Motion that the drive can follow: half its speed and acceleration at 10 V. Otherwise the position error grows
+  // without bound.
   const double most_velocity = 0.5 * 10.0 * gain * p.lead,
                most_acceleration = 10.0 * effort_per_volt / inertia * p.lead;
   p.velocity_limit = std::min({within(50.0, 1000.0), most_velocity, most_counts * unit.travel_velocity});
@@ -200,8 +200,8 @@ std::vector<Period> run_fixed(const AxisParameters<double>& parameters, int peri
   return record;
 }
 
-/// Eqs. (43), (50) or zero phase, and (19) in matrices of double precision, over what was measured, asked for and put
-/// out: told the same words, its estimates and its next word are what the fixed-point axis ought to have had.
+/// Eqs. (43), (50) or zero phase, and (19) in matrices of double precision. From the measurements, references and
+/// outputs of the fixed-point axis it computes the exact estimates and the exact next word.
 Differences judge(const AxisParameters<double>& p, const std::vector<Period>& record) {
   Eigen::Matrix3d A;
   A << 1.0, p.drive.Ad12, -p.drive.Bd1, 0.0, p.drive.Ad22, -p.drive.Bd2, 0.0, 0.0, 1.0;
@@ -260,7 +260,8 @@ double most_dac_steps(const AxisParameters<double>& p, const Differences& seen) 
 }
 
 /// Friction feed-forward, zero phase and disturbance cancellation are each on in half of the axes. The estimate of the
-/// disturbance is the least exact state: a rounding of the predicted position looks like one of 1 / Bd1 as much.
+/// disturbance is the least exact state: a rounding error of the predicted position becomes one that is 1 / Bd1 times
+/// as large.
 TEST(FixedPoint, EstimatesAndWordsStayWithinTheirBoundsOfDoublePrecision) {
   Differences worst;
   EXPECT_TRUE(rc::check("estimate within 3e-5 counts and four steps, converter within what these make", [&worst] {
@@ -299,7 +300,7 @@ TEST(FixedPoint, NoReadingMakesAnAxisOverflow) {
   }));
 }
 
-/// Those of changes divide by twice Bd1 two times, and so are less exact than anything else: 1e-5 of a weight here.
+/// The weights of changes contain two divisions by twice Bd1, so they are the least exact: 1e-5 of a weight here.
 TEST(FixedPoint, ZeroPhaseWeightsOfThePaperDrivesAreThoseOfDouble) {
   for (const auto& axis : {firmware_test::kPaperX, firmware_test::kPaperY}) {
     const auto in_fixed = firmware::to_fixed(firmware_test::parameters_of<double>(axis));

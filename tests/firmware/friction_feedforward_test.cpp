@@ -50,8 +50,8 @@ class FrictionFeedforward : public testing::TestWithParam<const PaperAxis*> {
 };
 INSTANTIATE_TEST_SUITE_P(PaperAxes, FrictionFeedforward, testing::Values(&kPaperX, &kPaperY));
 
-/// What a cubic through values and slopes at both ends of a piece of width h may miss, h^4/384 of the largest fourth
-/// derivative, and the roundings: twelve of them, each half a unit in the last place of the curve's largest value.
+/// Error of a cubic through values and slopes at both ends of a piece of width h: h^4/384 of the largest fourth
+/// derivative, plus twelve roundings, each half a unit in the last place of the curve's largest value.
 double stated_error_V(const PaperAxis& axis, int side, double speed) {
   const double volts_per_Nm = 1.0 / (axis.amplifier_gain_A_per_V * firmware_test::kMotorConstant_Nm_per_A);
   const double omega1 = axis.omega1_rad_s[side], omega2 = axis.omega2_rad_s[side];
@@ -76,7 +76,7 @@ TEST_P(FrictionFeedforward, IsEquation19InBothDirections) {
   }
 }
 
-/// `error`: of the level.
+/// `error`: as a share of the level.
 template <typename Scalar>
 void expect_stated_error(double error) {
   using Traits = firmware::ScalarTraits<Scalar>;
@@ -100,7 +100,7 @@ TEST(FrictionPieces, StayWithinTheirStatedErrorWhereTheOmegasDiffer) {
   expect_stated_error<firmware::FixedPoint>(1.7e-4);
 }
 
-/// A speed just below a border may be rounded into the piece beyond it.
+/// A speed just below the end of a piece may be rounded into the next piece.
 TEST(FrictionPieces, AreWholeAtTheirLastBorder) {
   for (int i = 1; i < 2000; ++i) {
     const float omega = 0.01f * static_cast<float>(i);

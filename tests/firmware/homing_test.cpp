@@ -23,7 +23,7 @@ struct Rail {
 
   static firmware::HomingParameters<float> parameters(HomingMode mode) { return {mode, 10.0F, 1.0F, 2000, 120, 0}; }
 
-  /// How the sequence ends; fault none: it arrived.
+  /// Result of the sequence; fault none: home was found.
   AxisFault run(const firmware::HomingParameters<float>& parameters) {
     sequence.configure(parameters);
     EXPECT_TRUE(sequence.begin());
@@ -110,7 +110,7 @@ TEST(Homing, WhatIsNeverFoundHasAName) {
   Rail without_switch;
   without_switch.switch_from = 1e9;
   EXPECT_EQ(without_switch.run(Rail::parameters(HomingMode::home_switch)), AxisFault::homing_switch_not_found);
-  EXPECT_LT(without_switch.place, 2100.0) << "the way is bounded";
+  EXPECT_LT(without_switch.place, 2100.0) << "the travel is bounded";
   Rail stuck_switch;
   stuck_switch.switch_from = -1e9;
   EXPECT_EQ(stuck_switch.run(Rail::parameters(HomingMode::home_switch)), AxisFault::homing_travel_exceeded);

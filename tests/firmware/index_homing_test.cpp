@@ -1,4 +1,4 @@
-// Homing by switch and index while the index monitor reads, too: both get every pulse.
+// Homing by switch and index while the index monitor also reads the index: both get every pulse.
 #include <cmath>
 #include <cstdint>
 
@@ -13,7 +13,8 @@ using firmware_test::kPaperX;
 
 constexpr std::int64_t kTurn = 4096;
 
-/// An axis whose first pulse of a slow approach comes between the first look at the index and the end of that period.
+/// An axis whose first pulse of a slow approach comes between the first reading of the index and the end of that
+/// period.
 class LateIndex : public firmware::boards::ValueAxis {
  public:
   struct Encoder {

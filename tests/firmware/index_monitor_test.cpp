@@ -32,7 +32,7 @@ struct Disc {
       index = {counter(by > 0 ? turn(place) * kSpacing : turn(before * kSpacing) * kSpacing + 3), true, false};
     return monitor.watch(index, counter(place));
   }
-  /// The first fault on the way, in steps of `by`.
+  /// The first fault during the travel, in steps of `by`.
   AxisFault travel(std::int64_t way, std::int64_t by) {
     for (std::int64_t gone = 0; gone < way; gone += std::abs(by)) {
       const AxisFault found = move(by);
@@ -50,7 +50,7 @@ TEST(IndexSpacing, ASoundEncoderMayTurnAsItLikes) {
     EXPECT_EQ(disc.travel(500, 100), AxisFault::none);
     EXPECT_EQ(disc.travel(500, -100), AxisFault::none);
   }
-  EXPECT_EQ(disc.travel(90 * kSpacing, 3 * kSpacing / 2), AxisFault::none) << "several pulses between two looks";
+  EXPECT_EQ(disc.travel(90 * kSpacing, 3 * kSpacing / 2), AxisFault::none) << "several pulses between two readings";
 }
 
 TEST(IndexSpacing, CountsLostOneByOneAddUp) {
@@ -97,7 +97,7 @@ TEST(IndexSpacing, IsWatchedOnAnAxisThatMoves) {
       last_turn = turn;
     }
     EXPECT_EQ(axis.axis.fault(), spacing == 2048 ? AxisFault::none : AxisFault::index_mismatch);
-    EXPECT_EQ(axis.axis.is_homed(), spacing == 2048) << "lost counts, lost home";
+    EXPECT_EQ(axis.axis.is_homed(), spacing == 2048) << "lost counts invalidate home";
   }
 }
 

@@ -29,7 +29,7 @@ TEST(InputFilter, CountsPeriodsInARow) {
   filter.filtered(true);
   EXPECT_TRUE(filter.filtered(true));
   EXPECT_TRUE(filter.filtered(true)) << "and stays";
-  EXPECT_FALSE(filter.filtered(false)) << "let go at once";
+  EXPECT_FALSE(filter.filtered(false)) << "released at once";
 }
 
 TEST(InputFilter, IsNotBegunAnewByAChangeOfParameters) {
@@ -75,7 +75,7 @@ TEST(AxisInputs, SparksTripNothingAndWhatStaysDoes) {
   }
 }
 
-/// What the axis covers while the control interrupt does not come.
+/// Travel of the axis while the control interrupt is missing.
 TEST(LostPeriods, EndInAStopAlongTheRamp) {
   DrivenAxis axis(firmware_test::parameters_of<float>(firmware_test::kPaperX));
   ASSERT_TRUE(axis.axis.jog(250.0f));

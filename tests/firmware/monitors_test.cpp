@@ -1,4 +1,5 @@
-// Each monitor: trips beyond its threshold, stays silent just below. The hardest legal motion: host/hil.
+// Each monitor trips beyond its threshold and does not trip just below it. For the hardest permitted motion see
+// host/hil.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -255,7 +256,7 @@ TEST(MonitorLimits, NoneCanBeSwitchedOff) {
   EXPECT_EQ(error_after([](auto& m) { m.saturation_samples = 0; }), Refusal::saturation_time);
 }
 
-/// Catches a row of the table that names another row's field.
+/// Catches a row of the table that refers to another row's field.
 TEST(MonitorLimits, EachParameterSetsAFieldOfItsOwn) {
   const auto limits_with = [](unsigned changed) {
     return firmware::monitor_limits<float>([&](auto id) { return decltype(id)::value == changed ? 2.0f : 1.0f; }, 1.0f,

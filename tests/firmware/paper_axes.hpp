@@ -77,12 +77,12 @@ constexpr firmware::MonitorLimits<Real> initial_monitor_limits(float encoder_res
   return firmware::monitor_limits<Real>(initial, encoder_resolution, sample_period_s);
 }
 
-/// Where nothing better is known. Following error: the way of 2 ms at the velocity limit, and 5 ms of the present
-/// speed; state feedback without any feed-forward is some 1 ms late. Disagreement: 4 % of the velocity limit and 10 %
-/// of the speed (tachometers are within 2 %, ripple included); a jump: a quarter of the limit; neither below what the
-/// encoder's steps look like. Overspeed: a fifth above the limit. Polarity: 30 % of the converter, well above any
-/// friction that can still be overcome. Oscillation: 25 % of the converter. Saturation: 0.1 s. Travel: all that an
-/// encoder counter holds. `velocity_limit` mm/s (m/s), `lead` mm/rad (1).
+/// Default thresholds. Following error: the travel in 2 ms at the velocity limit, and in 5 ms at the present speed;
+/// state feedback without any feed-forward lags by about 1 ms. Disagreement: 4 % of the velocity limit and 10 % of the
+/// speed (tachometers are within 2 %, ripple included); a jump: a quarter of the limit; neither below the speed noise
+/// of the encoder's steps. Overspeed: a fifth above the limit. Polarity: 30 % of the converter, well above any friction
+/// that can still be overcome. Oscillation: 25 % of the converter. Saturation: 0.1 s. Travel: the range of an encoder
+/// counter. `velocity_limit` mm/s (m/s), `lead` mm/rad (1).
 template <typename Real>
 constexpr firmware::MonitorLimits<Real> default_monitor_limits(Real velocity_limit, Real lead, Real encoder_resolution,
                                                                Real sample_period_s, Real dac_limit_V) {

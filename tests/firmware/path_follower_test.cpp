@@ -1,4 +1,4 @@
-// The board's path follower, with axes that only add up their increments.
+// The board's path follower, with axes that only sum their increments.
 #include "firmware/core/path/path_follower.hpp"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ class Followed : public testing::Test {
   LedGroup group_;
   std::array<std::int64_t, kAxes> given_{};
   int pushed_ = 0;
-  /// Of the circle: its acceleration is 0.28 at most, its jerk 0.0018.
+  /// Headroom of the circle: its acceleration is at most 0.28, its jerk 0.0018.
   std::uint32_t headroom_ : 4 = firmware::headroom_number(1.65);
   double off_ = 0.0, hardest_ = 0.0;
 };
@@ -111,7 +111,7 @@ TEST_F(Followed, IsOnThePathAtEverySampleAndExactAtItsEnd) {
   EXPECT_LT(hardest_, 1.0);
 }
 
-/// A reference may stand between two counts; the path's end is exact all the same.
+/// A reference may stand between two counts; the path's end is nevertheless exact.
 TEST_F(Followed, BeginsAnywhereAndEndsOnItsGrid) {
   open({5, (Increment{1} << 47) + 12345});
   run(pieces());
@@ -173,8 +173,8 @@ TEST_F(Followed, StopsOnThePathWhereItIsAsked) {
 /// that the board computes from the geometry, not by the nodes' claims. core/path/README.md states the bound.
 class StopOnACircle : public Followed {
  protected:
-  /// Counts along the path from the request to rest, begun where it is fastest; `u`: the centripetal share of the
-  /// acceleration there, `x`: the share of the velocity.
+  /// Counts along the path from the request, at the highest speed, to rest; `u`: the centripetal share of the
+  /// acceleration at that point, `x`: the share of the velocity.
   double way(double u, double x) {
     const double speed = x * kSpeed, radius = speed * speed / (u * kAcceleration);
     circle_ = {radius, std::round(1.875 * 2.0 * std::numbers::pi * radius / speed / kPiece) * kPiece};
@@ -229,7 +229,7 @@ TEST_F(Followed, ClaimsBeyondTheGeometryAreRefused) {
   EXPECT_EQ(refusal, Refusal::path_headroom);
 }
 
-/// 0 to `speed` in `samples` by a node with neither acceleration: 1.5 times the mean acceleration in its middle.
+/// 0 to `speed` in `samples`, without acceleration at either node: 1.5 times the mean acceleration in the middle.
 TEST_F(Followed, NodesBeyondAnAxissLimitsAreRefusedWhenTheyCome) {
   const auto anywhere = [](std::size_t, std::int64_t) { return true; };
   const auto refusal = [&](double speed, int samples) {
@@ -246,7 +246,7 @@ TEST_F(Followed, NodesBeyondAnAxissLimitsAreRefusedWhenTheyCome) {
   EXPECT_EQ(refusal(30.0, 50), Refusal::path_too_fast) << "0.9 of 0.8";
 }
 
-/// Both nodes lie inside, and what is between them does not.
+/// Both nodes lie inside, but the path between them does not.
 TEST_F(Followed, APieceThatLeavesTheTravelBetweenItsNodesIsRefused) {
   open();
   const auto inside = [](std::size_t, std::int64_t counts) { return counts >= -10 && counts <= 3000; };
@@ -261,7 +261,7 @@ TEST_F(Followed, APieceThatLeavesTheTravelBetweenItsNodesIsRefused) {
   EXPECT_EQ(push(300, 0, -25.0), Refusal::outside_travel) << "it turns round beyond 3,000";
 }
 
-/// The others of a group hear of an axis's fault in their next step, and stop from the speed that they have in it.
+/// The other axes of a group are told of an axis's fault in their next step, and stop from their speed in that step.
 TEST_F(Followed, LeadsOnForOneSampleWhenAnAxisLeaves) {
   open();
   for (int k = 0; k < 1000; ++k) step(pieces());

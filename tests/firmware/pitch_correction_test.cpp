@@ -1,4 +1,4 @@
-// Pitch error compensation alone: its addition to a reference, which never jumps.
+// Pitch error compensation alone: its addition to a reference never jumps.
 #include "firmware/core/compensation/pitch_correction.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ const std::array<PitchPoint, 4> kTable{{{-1000, counts(2), counts(3)},
                                         {1000, counts(-4), counts(-2)},
                                         {3000, counts(6), counts(8)}}};
 
-/// The deviation by hand: the formula of a straight line between two points.
+/// The expected deviation: a straight line between two points.
 double deviation(double x, bool forward) {
   const auto value = [forward](const PitchPoint& p) { return (forward ? p.forward : p.backward) / 65536.0; };
   if (x <= kTable.front().counts) return value(kTable.front());
@@ -68,7 +68,7 @@ struct Reference {
   double motor = 0, wanted = 0, largest_step = 0;
 };
 
-constexpr double kSlope = 0.006;  ///< of the steepest stretch, and a little
+constexpr double kSlope = 0.006;  ///< slightly above that of the steepest stretch
 
 TEST(PitchCorrection, SubtractsTheDeviationOfTheSideFromWhichItComes) {
   Reference reference;
@@ -88,7 +88,7 @@ TEST(PitchCorrection, TakesTheMeanOfBothSidesBeforeTheFirstMotion) {
   EXPECT_FALSE(reference.correction.is_crossing());
 }
 
-/// Catches a table that is switched on, off or over within a sample.
+/// Catches a table that is switched on, off or to another direction within one sample.
 TEST(PitchCorrection, CrossesOverWithoutAJump) {
   Reference reference(false, 500);
   reference.go_to(900);
@@ -147,7 +147,7 @@ TEST(PitchCorrection, IsContinuousAtAnySpeedAndPlace) {
   EXPECT_NEAR(reference.added(), -deviation(1e9, true), 1e-4);
 }
 
-/// What is added now is what was added to the newest increment so many samples ago.
+/// The present offset equals the offset of the newest increment kPreviewSamples ago.
 TEST(PitchCorrection, ItsPreviewReachesThePresentSampleBySample) {
   Reference reference(true, 500);
   std::vector<Increment> added(kPreviewSamples, reference.correction.offset(kPreviewSamples));
@@ -161,7 +161,7 @@ TEST(PitchCorrection, ItsPreviewReachesThePresentSampleBySample) {
   EXPECT_NE(added.front(), added.back());
 }
 
-/// At the ends of what is allowed nothing overflows.
+/// Nothing overflows at the limits of the allowed range.
 TEST(PitchCorrection, HoldsTheLargestTable) {
   std::vector<PitchPoint> table;
   constexpr std::int32_t kMost = firmware::kLargestDeviation;

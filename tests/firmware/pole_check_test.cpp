@@ -18,7 +18,7 @@ using firmware::AxisParameters;
 using firmware::PoleProblem;
 using Pole = std::complex<double>;
 
-/// By the definitions alone: eigenvalues of the matrices of eqs. (16), (43) and (50).
+/// Directly by the definitions: eigenvalues of the matrices of eqs. (16), (43) and (50).
 template <typename Matrix>
 PoleProblem verdict(const Matrix& matrix, double sample_period_s, double tolerance, bool& is_near_a_limit) {
   const auto values = matrix.eigenvalues();
@@ -113,7 +113,7 @@ TEST(PoleCheck, AnEstimatorThatLooksAtNothingIsRefused) {
   p = paper();
   for (auto& row : p.Kobs)
     for (float& gain : row) gain *= 1e-5f;
-  EXPECT_NE(firmware::estimator_problem(p), PoleProblem::none) << "nor one that hardly looks";
+  EXPECT_NE(firmware::estimator_problem(p), PoleProblem::none) << "nor an estimator with hardly any correction";
 }
 
 TEST(PoleCheck, AnEstimatorThatLivesOnAMissingTachometerIsRefused) {

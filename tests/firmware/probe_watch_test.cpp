@@ -19,7 +19,7 @@ struct WatchedProbe {
     watch.configure(contact, stop, kSamples);
     began = watch.begin(input);
   }
-  /// Runs this many control periods; returns the one in which the state was reached, 0 for none.
+  /// Runs this many control periods; returns the period in which the state was reached, 0 if it was not reached.
   int run(int periods) {
     for (int k = 1; k <= periods; ++k)
       if (watch.has_come(input)) return k;

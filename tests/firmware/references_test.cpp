@@ -38,7 +38,7 @@ rc::Gen<MotionLimits> any_limits() {
                            [](const MotionLimits& limits) { return check(limits) == Refusal::none; });
 }
 
-/// Watches increments: velocity is the increment, acceleration and jerk its differences.
+/// Monitors increments: velocity is the increment, acceleration and jerk are its differences.
 class Watch {
  public:
   explicit Watch(const MotionLimits& limits) : limits_(limits) {}
@@ -127,8 +127,8 @@ RC_GTEST_PROP(Move, TakesNoLongerThanItMust, ()) {
   RC_ASSERT(static_cast<double>(plan.samples()) <= optimal + 4.0);
 }
 
-/// From any moment of a jog: the jerk limit holds, the deceleration is the fault's, and after a reset the usual one
-/// again.
+/// At any moment of a jog: the jerk limit holds, the deceleration is that of a fault, and after a reset it is the usual
+/// one again.
 RC_GTEST_PROP(Jog, BrakesHardWithinTheLimitsOfAFault, ()) {
   MotionLimits limits = *any_limits();
   limits.fault_deceleration = limits.acceleration * *rc::gen::inRange<Increment>(1, 6);
@@ -149,7 +149,7 @@ RC_GTEST_PROP(Jog, BrakesHardWithinTheLimitsOfAFault, ()) {
   generator.stop();
   std::int64_t samples = 0;
   for (; !generator.at_rest(); ++samples) watch.see(generator.next());
-  // The acceleration runs out; then v / a + a / j at most. The acceleration is so many whole steps.
+  // The acceleration falls to zero; then at most v / a + a / j. The acceleration is a whole number of steps.
   const Increment steps = (limits.acceleration + limits.jerk - 1) / limits.jerk, step = limits.acceleration / steps;
   const Increment most = limits.fault_deceleration / step;
   const Increment fastest = speed + limits.acceleration * (steps + 1) / 2;

@@ -77,7 +77,7 @@ TEST_F(SensorStop, FaultsHaveADecelerationOfTheirOwn) {
   EXPECT_GT(found.way_mm, 6.0);
 }
 
-/// v^2 / (2 a) + v a / (2 j) of the fault's a; orderly stops keep to the reference's.
+/// v^2 / (2 a) + v a / (2 j) with a of a fault; normal stops use a of the reference.
 TEST_F(SensorStop, ARampByAFaultHasThatDecelerationToo) {
   auto p = parameters();
   p.jerk_limit = 200'000.0f;
@@ -147,13 +147,13 @@ TEST_F(SensorStop, AStopWhoseSensorFailsTooDropsTheEnable) {
   EXPECT_NEAR(found.longest_s, 0.031, 0.002);
 }
 
-/// A slow stop with a tachometer of a wrong offset, and then the encoder's wires are cut: the reference goes on, and
-/// what is added to the command would drive the axis unseen.
+/// A slow stop by a tachometer with a wrong offset, and then the encoder's wires are cut: the reference continues, and
+/// the growing command would drive the axis undetected.
 TEST_F(SensorStop, AStopWhoseEncoderFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
   for (const int silent_at : {220, 233, 250}) {
     auto p = parameters();
     p.acceleration_limit = 200.0f;
-    p.monitors.disagreement_floor = 26.0f;  // a slower stop than that counts as one that obeys
+    p.monitors.disagreement_floor = 26.0f;  // the drive obeys if it is not faster than the reference by twice this
     DrivenAxis axis(p);
     std::uint32_t at = 0;
     double before_mm = 0.0, fastest_mm_s = 0.0;
@@ -168,7 +168,7 @@ TEST_F(SensorStop, AStopWhoseEncoderFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
   }
 }
 
-/// The same with the encoder's counts lost, and then a dead tachometer.
+/// The same with lost encoder counts, and then a dead tachometer.
 TEST_F(SensorStop, AStopWhoseTachometerFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
   for (const int silent_at : {220, 233, 250}) {
     auto p = parameters();
@@ -245,7 +245,7 @@ TEST_F(SensorStopAlone, SensorsThatDivergeNearRestLeaveTheEncoder) {
   }
 }
 
-/// Of sensors that diverged near rest neither is known to be wrong: the other one may not gain speed.
+/// If sensors diverged near rest, it is unknown which one is wrong: the speed of the other sensor must not grow.
 TEST_F(SensorStopAlone, ADoubtfulEncoderIsLetGoOnceTheTachometerGainsSpeed) {
   constexpr auto kDiverged = AxisFault::encoder_tachometer_disagreement;
   for (const float sign : {1.0f, -1.0f}) {
@@ -254,11 +254,11 @@ TEST_F(SensorStopAlone, ADoubtfulEncoderIsLetGoOnceTheTachometerGainsSpeed) {
     EXPECT_FALSE(stop.next(seen(0.0f, sign * (3.1f + most), 0.0f)));
   }
   stop.begin(firmware::TrustedSensor::encoder, AxisFault::tachometer_invalid, seen(0.0f, 3.0f, 0.0f), 0.0f);
-  EXPECT_TRUE(stop.next(seen(0.0f, 10.0f * most, 0.0f))) << "nobody doubts it";
+  EXPECT_TRUE(stop.next(seen(0.0f, 10.0f * most, 0.0f))) << "the encoder is not doubted";
 }
 
-/// A drive that creeps at rest meets a command that grows with the way: Kc1 times a count each sample, as far as the
-/// converter goes.
+/// If the drive creeps at rest, the command grows with its travel: Kc1 times a count each sample, up to the converter's
+/// limit.
 TEST_F(SensorStopAlone, HoldsThePositionAtRest) {
   constexpr float kLoad_V = 0.25f;
   stop.begin(firmware::TrustedSensor::encoder, AxisFault::tachometer_invalid, seen(0.0f, 0.0f, 0.0f), kLoad_V);

@@ -28,7 +28,7 @@ TEST(FaultTable, HasCauseAndRemedyForEveryFault) {
   }
 }
 
-/// Hosts and records know faults by their numbers. Later ones follow these.
+/// Hosts and records identify faults by their numbers. New faults get the next numbers.
 TEST(FaultTable, NumbersAreFrozen) {
   constexpr const char* kFrozen[] = {"none",
                                      "encoder_invalid",
@@ -223,7 +223,7 @@ TEST_F(Board, TheFirstFaultStaysUntilItIsClearedAndItsCauseGone) {
   EXPECT_EQ(axes[0].fault(), AxisFault::emergency_stop);
   ASSERT_TRUE(axes[0].clear_fault());
   run(2);
-  EXPECT_EQ(axes[0].fault(), AxisFault::encoder_invalid) << "the next cause shows";
+  EXPECT_EQ(axes[0].fault(), AxisFault::encoder_invalid) << "the next cause is reported";
   io[0].encoder().reading.valid = true;
   ASSERT_TRUE(axes[0].clear_fault());
   run(firmware::kSelfTestSamples + 1);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mutants.sh ROOT PARTS_LIBRARY CXX all|few|DRIVER: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
 # unless each makes its driver's test fail. A mistake whose text is not found exactly once, or that does not compile, is
-# a fault of the list. `few` tries the first one of each driver, DRIVER those of one.
+# an error in the list. `few` tries the first mistake of each driver, DRIVER all mistakes of one driver.
 set -eu
 root=$1 library=$2 cxx=$3 which=$4
 jobs=$(nproc)

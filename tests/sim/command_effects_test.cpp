@@ -22,7 +22,7 @@ using sim_test::run;
 using sim_test::viscous_drive;
 using sim_test::with;
 
-/// Speed of the viscous drive under an effort that was `effort` from `start_s` on, at `t_s`, from rest.
+/// Speed of the viscous drive at `t_s`, from rest, if a torque of `effort` acts from `start_s` on.
 double step_response(double effort, double start_s, double t_s) {
   return t_s <= start_s ? 0.0 : effort / kViscous * (1.0 - std::exp(-kRate * (t_s - start_s)));
 }

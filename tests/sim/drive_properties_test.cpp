@@ -15,7 +15,7 @@ using sim_test::free_mass;
 using sim_test::kLead;
 using sim_test::with;
 
-/// A number between two bounds, in steps of a thousandth of their distance.
+/// A number between two bounds, in steps of a thousandth of the range.
 rc::Gen<double> between(double low, double high) {
   return rc::gen::map(rc::gen::inRange(0, 1001), [=](int k) { return low + (high - low) * k / 1000.0; });
 }

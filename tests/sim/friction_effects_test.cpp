@@ -102,7 +102,7 @@ TEST(Presliding, TravelBeforeSlipFollowsTheBristle) {
 }
 
 TEST(Presliding, AMassSwingsOnItsBristlesAsOnASpring) {
-  // At half a radian a step, the longest: a scheme of order 2 alone would be out of step after twenty radians.
+  // The longest steps, half a radian: a simple scheme of order 2 would have the wrong phase after twenty radians.
   const double sigma0 = 2500.0, sigma1 = 0.2, z0 = 1e-7;
   const Drive drive(with(coulomb_drive(), "presliding", {{"sigma0", sigma0}, {"sigma1", sigma1}}));
   const double omega = std::sqrt(sigma0 / kInertia), fading = 0.5 * (sigma1 + kViscous) / kInertia;
@@ -138,7 +138,7 @@ TEST(Presliding, SteadyFrictionIsTheCurve) {
 }
 
 TEST(Presliding, FollowingASlideFindsTheFrictionThatActs) {
-  // A slide bends the bristle by g/sigma0, whatever changes g, and though the effort is known to 3 % only.
+  // Sliding bends the bristle by g/sigma0, whatever changes g, even if the torque is known only to 3 %.
   const double sigma0 = 800.0, w = 0.05, warm = -0.3, asymmetry = 0.2, late_s = 1e3;
   const sim::DriveDescription plain = with(coulomb_drive(), "presliding", {{"sigma0", sigma0}, {"sigma1", 0.5}});
   const sim::DriveDescription drifting = with(
@@ -155,7 +155,7 @@ TEST(Presliding, FollowingASlideFindsTheFrictionThatActs) {
 }
 
 TEST(FrictionLag, FrictionFollowsASpeedJumpWithItsTimeConstant) {
-  // A flywheel so heavy that its speed stays; the impulse of friction after a jump from 1 to 6 rad/s.
+  // A flywheel so heavy that its speed is constant; the impulse of friction after a jump from 1 to 6 rad/s.
   const double heavy = 1e4, tau_s = 0.03, before = 1.0, after = 6.0, end_s = 0.06;
   sim::DriveDescription description = stribeck_drive();
   description.effects.front().parameters["J"] = heavy;
@@ -185,8 +185,8 @@ TEST(DwellStiction, BreakawayGrowsWithTheRest) {
 }
 
 TEST(DwellStiction, FollowingAMotionSeesThatTheRestIsForgottenBesideADrag) {
-  // A creep after a rest shows the level without the rest's gain: a stop too short to be seen has taken it away. A drag
-  // as large as the gain must not be taken for it.
+  // During creep after a rest, friction is at the level without the increase by the rest, because an undetected short
+  // stop has ended this increase. An additional drag of the same size must not be mistaken for the increase.
   const double gain = 0.4, w = 0.2, fading = std::exp(-w / kOmega), drag = gain * kStatic * fading;
   const Drive drive(with(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", 0.5}}),
                          "nonlinear_viscous", {{"coefficient", drag * std::sqrt(10.0 / w)}, {"exponent", 0.5}}));
@@ -252,7 +252,7 @@ TEST(ThermalFrictionDrift, LevelAndViscosityFollowTheTime) {
 }
 
 TEST(ThermalFrictionDrift, CountsFromTheColdStart) {
-  const double tau_s = 10.0, c = 0.25, start_s = 1.7e9;  // as a logger counts that has the date
+  const double tau_s = 10.0, c = 0.25, start_s = 1.7e9;  // as in a log whose clock counts from 1970
   const Drive drive(
       with(coulomb_drive(), "thermal_friction_drift",
            {{"viscous_change", 0.0}, {"coulomb_change", c}, {"time_constant", tau_s}, {"cold_start", start_s}}));

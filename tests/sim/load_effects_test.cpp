@@ -54,7 +54,7 @@ TEST(Cogging, ShiftsTheBreakawayLevelAlongTheTravel) {
   }
 }
 
-// An order that is read as a period of its own, or that loses its number, breaks away elsewhere.
+// If an order is read as a separate period, or loses its number, breakaway occurs at another position.
 TEST(Cogging, OfSeveralOrdersIsTheSumOfThem) {
   const double period_mm = 6.0;
   const Drive drive(with(coulomb_drive(), "cogging",

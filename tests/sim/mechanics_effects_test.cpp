@@ -73,7 +73,7 @@ TEST(Compliance, BothMassesAccelerateTogether) {
   const Drive drive(on_spring(free_mass(), 120.0, 0.3));
   const DriveState state = run(drive, drive.at(0.0, 0.0), 1.0, 300, 0.001);
   EXPECT_NEAR(state.load_w, 1.0 / kInertia * 0.3, 0.01);
-  // The spring carries what accelerates the load.
+  // The spring transmits the torque that accelerates the load.
   const double reduced = kInertia * kLoadFraction * (1.0 - kLoadFraction);
   const double stiffness = reduced * std::pow(2.0 * M_PI * 120.0, 2);
   EXPECT_NEAR((state.x - state.load_x) / kLead, kLoadFraction * 1.0 / stiffness, 1e-3 * kLoadFraction / stiffness);

@@ -125,7 +125,7 @@ TEST(Plant, FollowsTheQuantisedCommand) {
 }
 
 TEST(Plant, WithoutEnableTheMotorIsFreeOfCurrent) {
-  // Also where the amplifier adds an offset of its own to the command.
+  // Also if the amplifier adds an offset to the command.
   Plant plant(with(with(quantised_drive(), "dac_offset", {{"offset", 0.5}}), "torque_ripple",
                    {{"cosine", 0.1}, {"sine", 0.0}, {"period", 5.0}}),
               1);

@@ -140,7 +140,7 @@ TEST(Stribeck, WithoutVelocityConstantsFrictionFallsToTheCoulombLevelAtOnce) {
   EXPECT_NEAR(state.w, (u_V - kCoulomb) / kViscous * (1.0 - std::exp(-kRate * 0.1)), 1e-9);
 }
 
-/// Speed under eq. (19) from `w0` > 0, by a classical Runge-Kutta rule of order 4 at 1 us: good to about 1e-12.
+/// Speed under eq. (19) from `w0` > 0, by a classical Runge-Kutta rule of order 4 at 1 us: error about 1e-12.
 double stribeck_reference(double w0, double u_V, double end_s) {
   const auto rate = [u_V](double w) {
     const double fading = std::exp(-w / kOmega);

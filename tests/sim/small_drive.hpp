@@ -22,7 +22,7 @@ inline sim::EffectEntry entry(std::string kind, std::map<std::string, double> pa
   return {std::move(kind), std::move(parameters), {}, {}};
 }
 
-/// Inertia alone; `with` adds what a test is about.
+/// Inertia alone; `with` adds the effects under test.
 inline sim::DriveDescription free_mass() {
   sim::DriveDescription drive;
   drive.data.amplifier_gain_A_per_V = 2.0;

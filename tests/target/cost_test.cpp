@@ -28,7 +28,8 @@ TEST_F(CostOfAStep, FloatKeepsItsBudget) {
   EXPECT_LE(costs["estimator_and_feedback"].worst, 90);
   EXPECT_LE(costs["control_filters"].worst, 80) << "notch and low-pass";
   EXPECT_GT(costs["control_filters"].mean, 30) << "nothing was filtered";
-  // With all monitors, homed, everything switched on: the budget is of the average; the worst step is a ramp's.
+  // With all monitors, homed, everything switched on. The budget applies to the average; the worst step is during a
+  // ramp.
   EXPECT_LE(costs["one_axis"].mean, 448);
   EXPECT_LE(costs["both_axes"].mean, 987);
   EXPECT_LE(costs["one_axis"].worst, 560);
@@ -46,7 +47,7 @@ TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
 
 TEST_F(CostOfAStep, PathsKeepTheirBudget) {
   auto costs = count_instructions("cost-float-m4");
-  // The budget is of the average; the worst step is one in which the path's clock changes and a piece ends.
+  // The budget applies to the average; in the worst step the path's clock changes and a piece ends.
   EXPECT_LE(costs["both_axes_on_path"].mean, 1262);
   EXPECT_LE(costs["both_axes_on_path"].worst, 1545);
   EXPECT_GT(costs["both_axes_on_path"].mean, costs["both_axes"].mean + 50) << "nothing was followed";

@@ -1,4 +1,4 @@
-// Faults provoked in the emulated board: what the next run reports of them.
+// Faults provoked in the emulated board, and the next run's report of them.
 #include <gtest/gtest.h>
 
 #include "tests/target/qemu.hpp"
@@ -47,8 +47,8 @@ TEST_F(Fault, DivisionByZeroIsAUsageFault) {
   expect_lines(report_after("D"), {"reset: fault", "fault: usage fault", "cfsr 0x02000000", "outputs made safe 1"});
 }
 
-/// A push into the guard is a memory protection fault with an address there. Where the control interrupt comes first,
-/// its frame fails without an address, by the guard or, past it, by the end of RAM (a bus fault).
+/// A push into the guard is a memory protection fault with an address there. If the control interrupt comes first, its
+/// frame fails without an address: in the guard or, past the guard, at the end of RAM (a bus fault).
 TEST_F(Fault, StackOverflowIsNamed) {
   const std::string report = report_after("S");
   expect_lines(report, {"reset: fault", " fault, stack overflow\n", "outputs made safe 1"});

@@ -84,7 +84,7 @@ std::vector<std::pair<std::uint32_t, firmware::boards::OutputEdge>> edges_of_y(c
   return edges;
 }
 
-/// The image must show the same words (PilFaults): here is what they are.
+/// The expected edges; the image must show the same words (PilFaults).
 TYPED_TEST(PilScenario, OutputsChangeInTheOrderOfEnablingAndOfEachStop) {
   using enum firmware::boards::OutputEdge;
   const auto& story = target_test::fault_story();

@@ -1,4 +1,4 @@
-// The program on the emulated board, as it is wired: what feeds the watchdog, what its interrupts reach, what answers.
+// The program on the emulated board: feeding of the watchdog, interrupts, and replies.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using target_test::Qemu;
 
-/// What the board's bench has seen, and the control periods.
+/// Observations of the board's bench, and the control periods.
 struct Seen {
   unsigned long fed, beats, restarted, lamps, periods;
 };
@@ -35,7 +35,7 @@ Seen look(Qemu& board) {
   return seen;
 }
 
-/// Until so many control periods have passed.
+/// Waits until this many control periods have passed.
 Seen look_after(Qemu& board, unsigned long periods) {
   for (int asked = 0; asked < 2000; ++asked)
     if (const Seen seen = look(board); seen.periods >= periods) return seen;
@@ -60,7 +60,7 @@ TEST_F(Program, FeedsTheWatchdogAndTheChargePumpOnceAPeriod) {
   EXPECT_EQ(board.output().find("reset: watchdog"), std::string::npos);
 }
 
-/// The watchdog's warning is the NMI. Nothing there may hide from the next run who ended this one.
+/// The watchdog's warning is the NMI. Its handler must not hide the watchdog as the cause from the next run.
 TEST_F(Program, EndsByTheWatchdogWithoutItsControlInterruptAndWithoutItsBackground) {
   Qemu board = target_test::start_program();
   board.read_until("ready");

@@ -44,7 +44,7 @@ std::string obstacle(const std::string& name) {
 
 Qemu::Qemu(const std::string& machine, const std::filesystem::path& image, const std::filesystem::path& folder,
            const std::vector<std::string>& options) {
-  // By its entry: an image need not lie where the machine looks for a vector table.
+  // Started at its entry, because an image need not lie where the machine looks for a vector table.
   const std::string program = "loader,cpu-num=0,file=" + std::filesystem::absolute(image).string();
   std::vector<std::string> words{kEmulator, "-M", machine, "-device", program, "-display", "none", "-monitor", "none"};
   words.insert(words.end(), options.begin(), options.end());

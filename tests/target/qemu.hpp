@@ -1,4 +1,4 @@
-// Starts the emulator as a child and talks to it. Tests skip where it, or the image, is absent.
+// Starts the emulator as a child and talks to it. Tests are skipped if the emulator or the image is missing.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,8 @@ std::string obstacle(const std::string& name);
 
 class Qemu {
  public:
-  /// Starts `machine` with the image in `folder` as working directory. `options` come on top of those every run needs.
+  /// Starts `machine` with the image in `folder` as working directory. `options` are added to those that every run
+  /// needs.
   Qemu(const std::string& machine, const std::filesystem::path& image, const std::filesystem::path& folder,
        const std::vector<std::string>& options);
   Qemu(const Qemu&) = delete;
@@ -27,7 +28,7 @@ class Qemu {
   void send(const std::string& text) const;
 
   /// Reads the emulator's standard output until `text` appears after what was read before; throws after `limit`, with
-  /// what came instead. Returns everything read by this call.
+  /// the output so far. Returns everything read by this call.
   std::string read_until(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(30));
 
   /// Waits for the end; the exit status, or -1 after `limit`. What was printed meanwhile is in output().
@@ -45,8 +46,8 @@ class Qemu {
   std::size_t consumed_ = 0;
 };
 
-/// The program on the emulated board; `folder` is where that looks for its USB cable. Its clocks go with the
-/// instructions: a host that is busy must not starve it before its watchdog.
+/// The program on the emulated board; `folder`: where the board looks for its USB cable. Its clocks count instructions,
+/// so that its watchdog does not reset it if the computer is busy.
 Qemu start_program(const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 
 }  // namespace target_test

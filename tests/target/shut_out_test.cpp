@@ -23,8 +23,8 @@ TEST_P(ShutOut, IsATenthOfAPeriodAtMostWhileAxesMove) {
   EXPECT_LE(costs["other_requests"].worst, kShortestPeriod / 10);
 }
 
-/// Of a set that changes all there is: 2 ms in all, at an instruction a clock, and 20 us with the control interrupt
-/// out.
+/// A set that changes every value: 2 ms in all at one instruction per clock, and 20 us with the control interrupt
+/// disabled.
 TEST_P(ShutOut, IsShortWhileASetIsTakenOver) {
   const std::string why = target_test::obstacle(GetParam());
   if (!why.empty()) GTEST_SKIP() << why;

@@ -29,8 +29,8 @@ TEST(Startup, TakesItsInterruptsBackFromABootRom) {
   EXPECT_EQ(board.wait(), 0);
 }
 
-/// Three reports in a row take the line 150 ms, and the watchdog bites after 100. The letters come one at a time, as
-/// the board answers only what it has finished.
+/// Three reports in a row occupy the line for 150 ms, and the watchdog resets after 100 ms. The letters come one at a
+/// time, because the board answers a letter only after the previous answer is complete.
 TEST(Startup, AReportOnASlowLineKeepsNobodyFromFeedingTheWatchdog) {
   const std::string why = target_test::obstacle("emulated");
   if (!why.empty()) GTEST_SKIP() << why;

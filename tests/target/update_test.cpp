@@ -25,7 +25,7 @@ class BootCode : public testing::Test {
     EXPECT_EQ(board->wait(), 0);
   }
 
-  /// The first program lies behind the boot code, as if it was flashed; the second where the first one looks for it.
+  /// The first program lies behind the boot code, as if it had been flashed; the second where the first one expects it.
   static std::vector<std::string> options() {
     const auto loaded = [](const char* name, const char* address) {
       auto file = target_test::image(name);

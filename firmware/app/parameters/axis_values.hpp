@@ -75,14 +75,14 @@ constexpr CompensationParameters<float> compensation(const AxisValues& v, float 
   return c;
 }
 
-/// Within 1e-6 below 0.45 pi: Lambert's continued fraction.
+/// Lambert's continued fraction; error below 1e-6 for x below 0.45 pi.
 constexpr float tangent(float x) {
   float rest = 0.0F;
   for (float odd = 13.0F; odd > 0.5F; odd -= 2.0F) rest = x * x / (odd - rest);
   return rest / x;
 }
 
-/// `share`: frequency over control rate. If that is out of range, a1 is 0, which no filter has.
+/// `share`: frequency over control rate. If it is out of range, a1 is 0, which is invalid for a filter.
 [[gnu::noinline]] constexpr BiquadParameters<float> biquad(bool on, float share, float damping) {
   BiquadParameters<float> f;
   f.on = on;

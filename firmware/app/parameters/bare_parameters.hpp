@@ -17,8 +17,8 @@ inline constexpr float kLittle = 1e-4F;
 /// largest velocity in the box. Both are 0 if the tachometer's scale is not known, and negative without a tachometer.
 ///
 /// The estimate is the smoothed encoder reading (an alpha-beta filter with 1/2 and 1/10), for a model without effort.
-/// The sensors are compared with each other if their scales are known; the box limits everything else. The parameters
-/// of amplifier and brake apply as in a closed loop.
+/// The sensors are compared with each other if their scales are known. The limits of the box replace all other
+/// monitors. The parameters of amplifier and brake apply as in a closed loop.
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float rate_Hz, float velocity_per_count,
                                                     float velocity) {
   AxisParameters<float> p;

@@ -18,7 +18,7 @@ constexpr std::size_t change_that_needs_standstill(const ParameterValues& from, 
   return from.size();
 }
 
-/// Whether the change invalidates home.
+/// Whether the change invalidates the home position.
 constexpr bool do_counts_change_meaning(const AxisValues& from, const AxisValues& to) {
   return from.get<"drive.encoder_resolution">() != to.get<"drive.encoder_resolution">() ||
          from.get<"homing.mode">() != to.get<"homing.mode">() ||

@@ -31,7 +31,7 @@ struct ExcitationRequest {
   std::int32_t travel_counts = 0;
   std::int32_t margin_counts = 0;
   float speed = 0;           ///< counts a sample
-  float drive_velocity = 0;  ///< the same, rad/s (m/s); 0: not known; negative: no tachometer
+  float drive_velocity = 0;  ///< the same speed, rad/s (m/s); 0: not known; negative: no tachometer
   float volts = 0;           ///< steps of the converter
   std::uint32_t samples = 0;
   float amplitude = 0;

@@ -11,8 +11,8 @@ namespace firmware {
 
 inline constexpr std::size_t kLoggedFaults = 64;  ///< the newest ones
 
-/// A fault of an axis. If `reset` is not 0, an end of the program by itself: then counts() gives the processor's
-/// address, `second_fault` the exception's number, and bit n of `activity` is set if axis n was enabled.
+/// A fault of an axis or, if `reset` is not 0, an unexpected end of the program. In the latter case counts() gives the
+/// processor's address, `second_fault` the exception's number, and bit n of `activity` is set if axis n was enabled.
 struct LoggedFault {
   std::uint32_t number = 0;      ///< consecutive number of the fault since the log began, from 1
   std::uint32_t run_s = 0;       ///< total running time of the board

@@ -102,7 +102,7 @@ enum class Status : std::uint8_t {
   bad_image = 25,       ///< RefusedImagePayload says why
   on_trial = 26,        ///< no motion and no update until the running image is confirmed
   no_probe = 27,        ///< a probing path, but probe.input is 0 or the board has no such input
-  probe_already = 28,   ///< a path looks for a contact that exists already, or for the loss of a missing one
+  probe_already = 28,   ///< the contact, or loss of contact, that the path looks for exists already
 };
 
 struct IdentityPayload {
@@ -276,7 +276,7 @@ enum class Channel : std::uint8_t {
   friction = 8,             ///< scalar, V
   control = 9,              ///< scalar, V: before limits and rounding
   flags = 10,               ///< state, then fault << 8, then saturated << 16
-  table_counts = 11,        ///< low word of the counts of a second encoder, on the table; of axes with kAxisScale alone
+  table_counts = 11,        ///< low word of the counts of a second encoder, on the table; only of axes with kAxisScale
 };
 inline constexpr std::size_t kChannels = 11;  ///< of every axis
 inline constexpr std::size_t kWordsPerReport = 12;

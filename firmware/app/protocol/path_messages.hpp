@@ -7,15 +7,15 @@
 
 namespace firmware {
 
-/// Format of a node's first word: 0 duration alone, 1 duration and headroom. Each end states its format, so that
-/// neither misreads the other's nodes.
+/// Format of a node's first word: 0 duration alone, 1 duration and headroom. Host and board each state their format, so
+/// that neither misreads the other's nodes.
 inline constexpr std::uint8_t kPathNodeFormat = 1;
 
 struct OpenPathRequest {
   std::uint8_t mask = 0;      ///< axes, bit 0 is x
   std::uint8_t relative = 0;  ///< 1: axes need not be homed
   PathUnits units{};
-  std::uint8_t node_format = kPathNodeFormat;  ///< another is refused: Status::wrong_version
+  std::uint8_t node_format = kPathNodeFormat;  ///< other formats are refused: Status::wrong_version
   ProbeStop probe = ProbeStop::none;
   std::uint8_t reserved = 0;
 };

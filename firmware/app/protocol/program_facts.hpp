@@ -10,7 +10,7 @@ struct BootFacts {
   std::uint8_t reset_cause = 0;  ///< boards/image/survival_record.hpp
   std::uint16_t resets = 0;      ///< since power-on
   bool simulated = false;
-  bool lacks_brown_out_reset = false;  ///< no drive is enabled until its level is set
+  bool lacks_brown_out_reset = false;  ///< no drive can be enabled until its level is set
 };
 
 /// The program's use of stack and processor time. Cycles: of the control interrupt; 0 if they are not counted.

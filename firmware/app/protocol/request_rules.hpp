@@ -104,8 +104,7 @@ constexpr const RequestRule* rule_of(MessageType type) {
   return found != request_rules::kRules.end() ? found : nullptr;
 }
 
-/// Whether the request is refused between an accepted restart and the reset: all except reading, stopping and
-/// disabling.
+/// Whether the request is refused between an accepted restart and the reset. Reading, stopping and disabling are not.
 constexpr bool acts(const RequestRule& rule) { return rule.asker != Asker::anyone; }
 
 }  // namespace firmware

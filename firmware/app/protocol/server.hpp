@@ -23,7 +23,7 @@ class ProtocolServer {
   ProtocolServer(Application& application, const ImageHeader& image, const BootFacts& boot)
       : app_(application), image_(image), boot_(boot), update_(application, image) {}
 
-  /// A round of the background: at most one report in and one out. Never waits.
+  /// One round of the background: at most one report in and one out. Never waits.
   template <hal::UsbHid Usb>
   void poll(Usb& usb, const ProgramUse& use = {}) {
     use_ = use;

@@ -22,7 +22,7 @@ enum class TriggerPhase : std::uint8_t {
   complete = 3,
 };
 
-/// Without initial values, so that it may be in memory that start-up does not initialise.
+/// Has no initial values, so that it may lie in memory that start-up does not initialise.
 struct TriggerRequest {
   std::array<std::uint16_t, hal::kMostAxes> channels;  ///< of each axis: bit n is channel n; kWordsPerReport in all
   std::array<std::uint16_t, hal::kMostAxes> wide;      ///< channels that are kept with 32 bits instead of 16
@@ -42,7 +42,7 @@ inline constexpr std::uint8_t kAnyAxis = 0xFF;
 struct TriggerStatePayload {
   std::uint8_t phase = 0;       ///< TriggerPhase
   std::uint8_t half_words = 0;  ///< of a row
-  std::uint8_t survived = 0;    ///< 1: it is from before the last reset
+  std::uint8_t survived = 0;    ///< 1: the capture is from before the last reset
   std::uint8_t reserved = 0;
   std::uint32_t rows = 0;         ///< available, the oldest first
   std::uint32_t trigger_row = 0;  ///< among them

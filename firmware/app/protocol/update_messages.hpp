@@ -30,7 +30,7 @@ enum class ImageRefusal : std::uint8_t {
   none = 0,
   other_board = 1,
   other_chip = 2,
-  other_layout = 3,  ///< of the header: built for boards without boot code, or for later ones
+  other_layout = 3,  ///< another header layout: built for boards without boot code, or for later ones
   wrong_size = 4,    ///< shorter than its header says, or larger than a slot
   no_header = 5,
   wrong_crc = 6,

@@ -36,7 +36,7 @@ class UpdateRequests<Application> {
   /// The running image was started for the first time and has not been confirmed.
   bool is_on_trial() const { return is_on_trial_; }
 
-  /// It has not been confirmed in time: a reset starts the older image again.
+  /// The running image has not been confirmed in time: a reset starts the older image again.
   bool trial_has_failed() const {
     return is_on_trial_ && !app_.any_enabled() && app_.control_periods() / control_rate_Hz() >= kTrial_s;
   }
@@ -68,7 +68,7 @@ class UpdateRequests<Application> {
   using Flash = std::remove_reference_t<decltype(std::declval<Application&>().board().image_flash())>;
   using Slots = ImageSlots<Flash>;
 
-  /// A host finds the board again within seconds of its restart, by the rules of USB within 5 s.
+  /// Long enough: a host finds the board within 5 s of its restart, as USB requires.
   static constexpr std::uint32_t kTrial_s = 30;
 
   std::uint32_t control_rate_Hz() const {

@@ -54,7 +54,7 @@ class FaultLog {
     return true;
   }
 
-  /// At most kLoggedFaults.
+  /// Number of entries, at most kLoggedFaults.
   std::size_t size() const { return std::min(kept_, kLoggedFaults); }
   /// `age` 0 is the newest. Empty beyond the oldest, and for a damaged entry.
   std::optional<LoggedFault> entry(std::size_t age) {

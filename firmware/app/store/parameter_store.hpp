@@ -37,7 +37,7 @@ struct StoreReport {
 /// A save erases the slot that does not hold the newest set, writes tables, entries and header there, reads them back,
 /// and then programs the mark that makes them valid. Last, it marks the older set as superseded. After a power cut at
 /// any time, the newest valid set is therefore the old or the new one. A superseded set without a successor shows
-/// damage that no power cut explains; it never replaces the set that the user saved last.
+/// damage that a power cut cannot cause; it is never used in place of the set that was saved last.
 template <hal::Flash Flash>
 class ParameterStore {
  public:
@@ -147,7 +147,7 @@ class ParameterStore {
     return flash_.erase(target()) == hal::FlashResult::ok;
   }
 
-  /// `replaced`: the axis whose table was staged.
+  /// `replaced`: the axis whose table is staged.
   SaveResult finish_set(const ParameterValues& values, std::size_t replaced) {
     is_staging_ = false;
     const std::size_t target = this->target();

@@ -11,10 +11,10 @@ enum class BootResult : std::uint8_t {
   on_trial,  ///< there is a complete image that has not yet reported that it is healthy
 };
 
-/// Runs the newest image that has not failed, after copying it to the program's place unless it is already there. Only
-/// marks of a slot change, so after a power cut at any time the next start repeats all of this. An image that was never
-/// started is first marked as tried; unless its run reports that it is healthy, the older image returns at the next
-/// reset. A program that `axistool flash` wrote runs unchanged.
+/// Runs the newest image that has not failed, after copying it to the program's place unless it is already there. In
+/// the slots only marks change, so after a power cut at any time the next start repeats all of this. An image that was
+/// never started is first marked as tried; unless its run reports that it is healthy, the older image returns at the
+/// next reset. A program that `axistool flash` wrote runs unchanged.
 template <hal::Flash Flash>
 class BootChoice {
  public:

@@ -21,7 +21,7 @@ class ImageUpdate {
   const ImageSlots<Flash>& slots() const { return slots_; }
   const ImageHeader& own() const { return own_; }
 
-  /// The running program was started for the first time, and without confirmation an older image returns.
+  /// The running program was started for the first time; unless it is confirmed, an older image returns.
   bool is_on_trial() const {
     const auto running = slots_.running_slot();
     return running && slots_.state(*running) == SlotState::tried && slots_.is_usable(other_than(*running));
@@ -112,7 +112,7 @@ class ImageUpdate {
   UpdateResult keep_running(Stalled stalled) {
     constexpr std::size_t kKeeper = Slots::kFirstSlot;
     if (!slots_.is_whole(Slots::kProgram)) return UpdateResult::not_verified;
-    const auto present = slots_.number(Slots::kProgram);  // in case its slot was damaged meanwhile
+    const auto present = slots_.number(Slots::kProgram);  // the slot may have been damaged meanwhile
     const std::uint32_t number = present.value_or(slots_.highest_number() + 1);
     const auto image = flash_.view(Slots::kProgram).first(rounded_up(slots_.header(Slots::kProgram).image_size));
     if (stalled([&] { return flash_.erase(kKeeper); }) != hal::FlashResult::ok) return UpdateResult::flash_failed;

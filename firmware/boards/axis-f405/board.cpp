@@ -4,7 +4,7 @@
 
 namespace firmware::boards {
 
-using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): this file is the chip's
+using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): this file is for one chip
 
 namespace {
 
@@ -105,8 +105,8 @@ void Board::start_watchdogs() {
   period_watchdog_.start();
 }
 
-/// On this chip the window watchdog stands still without its clock (RM0090, 7.3.13: set and cleared by software); the
-/// independent one cannot be stopped.
+/// Without its clock the window watchdog of this chip stands still (RM0090, 7.3.13: set and cleared by software). The
+/// independent watchdog cannot be stopped.
 void Board::begin_stall() {
   rcc().APB1ENR = rcc().APB1ENR & ~Rcc::kWindowWatchdog;
   watchdog_.allow(kStall_ms);
@@ -182,7 +182,7 @@ ResetCause read_reset_cause() {
   return (flags & Rcc::kPinReset) != 0 ? ResetCause::reset_pin : ResetCause::unknown;
 }
 
-/// Pins alone: the enables, the brakes, the amplifiers' power, and the converter's clear input, which needs no
+/// Sets only pins: the enables, the brakes, the amplifiers' power, and the converter's clear input, which needs no
 /// transfer.
 void make_outputs_safe() noexcept {
   for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y(), pins::dynamic_brake_x(),

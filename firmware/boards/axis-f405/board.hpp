@@ -97,9 +97,9 @@ class Board {
   void start_control();
   /// Connects the board to USB. False if the controller does not answer.
   bool start_usb();
-  /// First thing in the control interrupt.
+  /// Call it first in the control interrupt.
   void acknowledge_control();
-  /// Last thing in it. Drives the external charge pump only while the program works.
+  /// Call it last in the control interrupt. Drives the external charge pump only while the program works.
   void control_has_run(bool all_is_alive);
   /// The converter's interrupt.
   void recover_conversions() { scan_.recover_from_overrun(); }
@@ -107,10 +107,10 @@ class Board {
   /// Work of the background: connects to a computer if one is present, reads the D/A converter back, one register at a
   /// time, and restarts it while the outputs are off.
   void watch(bool outputs_off);
-  /// Whether the option bytes are as delivered. Then the chip may do anything while its supply falls below 2.7 V, even
-  /// erase its flash.
+  /// Whether the brown-out reset is off, as on a new chip. Then the chip may do anything while its supply falls below
+  /// 2.7 V, even erase its flash.
   bool lacks_brown_out_reset() const;
-  /// Report for whoever builds the board: option bytes, converter, overruns.
+  /// Report for commissioning: option bytes, converter, overruns.
   void report(TextWriter<Serial>& out) const;
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
@@ -124,7 +124,7 @@ class Board {
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
   hal::stm32f4::ImageFlash& image_flash() { return image_flash_; }
-  /// Survives a reset.
+  /// State of the triggered capture; survives a reset.
   TriggeredState& capture_state() { return boards::capture_state(); }
   std::span<std::uint16_t> capture_rows() { return boards::capture_rows(); }
 
@@ -136,8 +136,8 @@ class Board {
 
  private:
   static constexpr std::uint32_t kWatchdog_ms = 50;
-  /// Erasing a sector takes 2 s at most (datasheet, table 40); the watchdog's oscillator runs at 47 kHz instead of 32
-  /// at most, which makes 4 s 2.7.
+  /// Erasing a sector takes at most 2 s (datasheet, table 40). The watchdog's oscillator runs at 47 kHz at most instead
+  /// of 32 kHz, so 4 s are at least 2.7 s.
   static constexpr std::uint32_t kStall_ms = 4000;
   static constexpr std::uint32_t kWatches_Hz = 200;  ///< each of the converter's six registers every 30 ms
 

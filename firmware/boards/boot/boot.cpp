@@ -42,7 +42,7 @@ constexpr BootVectors make_boot_vectors() {
 
 }  // namespace
 
-/// Restarts: an incomplete copy is repeated.
+/// A fault restarts the board; the next start repeats an incomplete copy.
 extern "C" [[gnu::used, noreturn]] void boot_fault() {
   hal::cortex_m::system_control().AIRCR = hal::cortex_m::SystemControl::kResetRequest;
   for (;;) asm volatile("" ::: "memory");

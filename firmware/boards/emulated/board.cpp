@@ -94,7 +94,7 @@ void Board::take_computer_time() {
   knows_computer_ = true;
 }
 
-/// Saves the computer's time: a waiting processor need not be emulated.
+/// Waits for an interrupt: this saves the computer's time, because a waiting processor need not be emulated.
 void Board::watch(bool) {
   constexpr unsigned kRounds = 4;
   while (!background_runs_) continue;

@@ -47,7 +47,7 @@ class BenchLine {
   std::uint32_t character_ticks_, sent_at_ = 0;
 };
 
-/// USB by report_cable.hpp. Its interrupt takes bytes in; the background handles them.
+/// USB through report_cable.hpp. Its interrupt reads bytes; the background handles them.
 class CableUsb {
  public:
   bool start() {
@@ -62,7 +62,7 @@ class CableUsb {
   void handle_interrupt() {
     if (is_open_) stream_.fetch();
   }
-  /// Rounds of the background without a byte, so far.
+  /// Number of rounds of the background without a byte.
   unsigned quiet_rounds() const { return quiet_rounds_; }
   void poll() {
     if (!is_open_) return;
@@ -152,8 +152,8 @@ class Board {
  private:
   static constexpr std::uint32_t kClock_Hz = 25'000'000;           // AN386: processor and watchdog
   static constexpr std::uint32_t kWatchdogTicks = kClock_Hz / 20;  // resets after twice 50 ms
-  /// The two emulators have different times, and either may be slower. The board's time advances only as far as the
-  /// computer's, so a faster computer may have to wait for it.
+  /// The emulated board and the computer have different times, and either may be slower. The board's time advances only
+  /// as far as the computer's, so a faster computer may have to wait for it.
   static constexpr std::uint32_t kMostBehind_us = 20'000;
 
   static std::uint32_t ticks();

@@ -19,7 +19,7 @@ class MemoryFlashOf {
     std::array<std::array<std::byte, kSectorSize>, kSectors> sectors;
   };
 
-  /// Erased, unless the memory already contains such a flash.
+  /// Initially erased, unless the memory already contains such a flash.
   explicit MemoryFlashOf(Cells& cells) : cells_(cells) {
     constexpr std::uint32_t kMagic = 0x464C5348;
     if (cells_.magic == kMagic) return;

@@ -14,7 +14,7 @@ namespace firmware::boards {
 
 /// First byte of each frame's payload, and the only one except in `report`, where the report follows.
 enum class CableMessage : std::uint8_t {
-  hello = 'H',         ///< from the board, when its receiver is on: earlier frames are void
+  hello = 'H',         ///< from the board, when its receiver is on: earlier frames are invalid
   configured = 'C',    ///< to the board
   unconfigured = 'U',  ///< to the board
   report = 'R',
@@ -39,13 +39,13 @@ class ReportCable {
     begin_anew(configured);
     tell(configured ? CableMessage::configured : CableMessage::unconfigured);
   }
-  /// For the computer: time by which its clock has advanced.
+  /// For the computer: sends the time by which its clock has advanced.
   void pass_time(std::uint32_t passed_us) {
     std::array<std::byte, 1 + sizeof passed_us> payload{static_cast<std::byte>(CableMessage::time)};
     std::memcpy(payload.data() + 1, &passed_us, sizeof passed_us);
     tell(payload);
   }
-  /// For the board: that time since the last call.
+  /// For the board: the computer's time that has passed since the last call.
   std::uint32_t take_passed_us() { return std::exchange(passed_us_, 0u); }
   /// For the computer: true once after each start of the board.
   bool heard_hello() {

@@ -1,4 +1,4 @@
-// A board's report at start: its image, whether that is intact, and why the last run ended.
+// A board's report at start: its image, whether the image is intact, and why the last run ended.
 #pragma once
 
 #include "firmware/boards/image/survival_record.hpp"

@@ -9,7 +9,7 @@
 namespace firmware::boards {
 
 /// Limits wear of the flash by a program that fails repeatedly at its start.
-inline constexpr std::uint32_t kMostLoggedResets = 16;  ///< from power-on on
+inline constexpr std::uint32_t kMostLoggedResets = 16;  ///< since power-on
 
 /// Entry for a run that ended by a processor fault, a watchdog or its supply.
 inline std::optional<LoggedFault> entry_of(const LastRun& last_run) {

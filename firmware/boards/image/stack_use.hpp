@@ -1,4 +1,4 @@
-// Stack use of a run, from the pattern that start-up has written.
+// Stack use of a run, from the remaining part of the pattern that start-up wrote.
 #pragma once
 
 #include <cstdint>

@@ -49,7 +49,7 @@ struct FaultRecord {
   std::uint32_t unexpected_interrupt = 0;  ///< exception number of an interrupt that has no handler
   std::array<std::uint32_t, 13> r{};       ///< r0 to r12
   std::uint32_t sp = 0, lr = 0, pc = 0, xpsr = 0;
-  std::uint32_t frame_valid = 0;     ///< 0: the stack could not take r0-r3, r12, lr, pc, xpsr, and they are 0
+  std::uint32_t frame_valid = 0;     ///< 0: r0-r3, r12, lr, pc, xpsr did not fit the stack and are 0
   std::uint32_t stack_overflow = 0;  ///< the stack had overflowed, by a push or by an interrupt's frame
   std::uint32_t exc_return = 0;
   std::uint32_t cfsr = 0, hfsr = 0, mmfar = 0, bfar = 0;

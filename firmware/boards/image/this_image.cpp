@@ -44,7 +44,7 @@ const ImageHeader& this_image() {
 
 ImageState verify_this_image() {
   const std::byte* start = _image_start;
-  asm("" : "+r"(start));  // flash may begin at address 0, which is no null pointer here
+  asm("" : "+r"(start));  // flash may begin at address 0, which is not a null pointer here
   ImageHeader read_back;
   return examine_image({start, reinterpret_cast<std::size_t>(_image_limit)}, read_back);
 }

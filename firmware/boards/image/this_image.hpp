@@ -7,7 +7,7 @@ namespace firmware::boards {
 
 const ImageHeader& this_image();
 
-/// Reads the whole image: some 16 ms at 168 MHz.
+/// Reads the whole image: about 16 ms at 168 MHz.
 ImageState verify_this_image();
 
 }  // namespace firmware::boards

@@ -45,7 +45,7 @@ class CountRange {
   constexpr CountRange() = default;  ///< all counts
   constexpr CountRange(std::int64_t first, std::int64_t last)
       : first_(static_cast<std::uint64_t>(first)), span_(static_cast<std::uint64_t>(last) - first_) {
-    if (last < first) {  // empty: one count that no axis reaches
+    if (last < first) {  // empty range: one count that no axis reaches
       first_ = std::uint64_t{1} << 63;
       span_ = 0;
     }

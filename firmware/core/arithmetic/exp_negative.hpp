@@ -7,8 +7,8 @@
 
 namespace firmware {
 
-/// exp(-y) for y >= 0; negative y counts as 0. exp(0) is exactly 1; from y = 87 on (exp(-87) = 1.6e-38) it is 0.
-/// In float the relative error is below 7.5e-8 * (3 + y): the roundings of y*log2(e) (6e-8 y) and of log2(e) itself
+/// exp(-y) for y >= 0; for negative y it is 1. exp(0) is exactly 1; from y = 87 on (exp(-87) = 1.6e-38) it is 0. In
+/// float the relative error is below 7.5e-8 * (3 + y): the roundings of y*log2(e) (6e-8 y) and of log2(e) itself
 /// (1.3e-8 y), and three more of the polynomial's result.
 ///
 /// exp(-y) = 2^-n * 2^-f with n + f = y*log2(e), |f| <= 1/2. The polynomial is the minimax fit of degree 6 to 2^-f in

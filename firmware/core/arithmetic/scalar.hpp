@@ -35,7 +35,7 @@ struct ScalarTraits<Real> {
 
   static constexpr float to_float(Real value) { return static_cast<float>(value); }
 
-  /// Toward zero. |value| < 2^31; outside that range machines differ, so callers limit first.
+  /// Toward zero. |value| < 2^31; outside that range results differ between machines, so callers limit first.
   static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
 
   static constexpr bool is_nan(Real value) { return !(value == value); }
@@ -62,14 +62,14 @@ struct ScalarTraits<Real> {
     return static_cast<Real>(high) * kHighUnit + static_cast<Real>(low) * kLowUnit;
   }
 
-  /// A position's fraction of a count, 0 <= fraction < 2^48, as counts; what lies below 2^-31 counts is left out.
+  /// A position's fraction of a count, 0 <= fraction < 2^48, as counts; bits below 2^-31 counts are dropped.
   static constexpr Real from_fraction(std::int64_t fraction) {
     constexpr Real kUnit = Real(1) / Real(std::int64_t{1} << 31);
     return static_cast<Real>(static_cast<std::int32_t>(fraction >> (kFractionBits - 31))) * kUnit;
   }
 
-  /// Counts as an increment, toward zero. |counts| < 2^15. In three pieces, each exact: a conversion to 64 bits is a
-  /// library call on a 32-bit processor, and one that computes in double precision.
+  /// Counts as an increment, toward zero. |counts| < 2^15. In three exact pieces, because a conversion to 64 bits is a
+  /// library call in double precision on a 32-bit processor.
   static constexpr std::int64_t to_increment(Real counts) {
     constexpr Real kPiece = Real(65536);
     const Real scaled = counts * kPiece;

@@ -12,7 +12,7 @@ class CrossingRamp {
  public:
   static constexpr std::int32_t kLongest = 4096;
 
-  /// `samples`: 1..kLongest; anything where it is never begun.
+  /// `samples`: 1..kLongest; any value if begin() is never called.
   constexpr void configure(std::int32_t samples) {
     samples_ = samples;
     const std::int64_t n = samples;

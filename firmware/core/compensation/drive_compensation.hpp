@@ -47,7 +47,7 @@ class DriveCompensation {
     return presliding_on_ ? presliding_.advance(velocity, sliding_V) : sliding_V;
   }
 
-  bool is_on_ = false;  // first, within reach of every step's loads
+  bool is_on_ = false;  // comes first, so that one load of every step reaches it
   bool friction_on_ = false, presliding_on_ = false, varies_ = false;
   PreslidingFriction<Scalar> presliding_;
   CompensationParameters<Scalar> parameters_{};

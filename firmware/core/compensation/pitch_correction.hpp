@@ -20,8 +20,8 @@ struct PitchParameters {
 };
 
 /// Subtracts the deviation for the direction in which the reference moves, interpolated linearly between points; before
-/// the first motion the mean of both directions. Acts once the axis is homed. Where the offset would jump (a reversal,
-/// a home found or lost), it changes over a fixed number of samples.
+/// the first motion the mean of both directions. Acts once the axis is homed. If the offset would jump (a reversal, a
+/// home found or lost), it changes over a fixed number of samples.
 class PitchCorrection {
  public:
   constexpr void configure(const PitchParameters& parameters) {
@@ -48,14 +48,15 @@ class PitchCorrection {
   constexpr bool is_on() const { return on_; }
   constexpr bool is_crossing() const { return ramp_.is_under_way(); }
 
-  /// The loop closes at the axis's position: the reference begins at `place`, the wanted position beside it.
+  /// The loop closes at the axis's position: the reference begins at `place`, and the wanted position differs from it
+  /// by the correction.
   [[gnu::noinline]] constexpr void enter(const CountPosition& place, bool homed) {
     if (!on_) return;
     acts_ = homed;
     ramp_.end();
     position_ = place;
     Increment offset = 0;
-    for (int i = 0; acts_ && i < 3; ++i) {  // each round leaves a sixty-fourth of the error
+    for (int i = 0; acts_ && i < 3; ++i) {  // each round reduces the error to a sixty-fourth
       offset = wanted();
       position_ = place;
       position_.advance(-offset);
@@ -117,11 +118,11 @@ class PitchCorrection {
            (stretch_.slope >> 16) * (position_.fraction >> (kFractionBits - 16));
   }
 
-  /// Rare: eight comparisons and a division.
+  /// Called rarely: eight comparisons and a division.
   [[gnu::noinline]] constexpr void find_stretch() {
     stretch_ = {-kBeyondAll, kBeyondAll, 0, 0};
     if (table_.empty()) return;
-    std::size_t first = 0, behind = table_.size();  // the first point beyond the position lies between them
+    std::size_t first = 0, behind = table_.size();  // the first point beyond the position is in first..behind
     while (first < behind) {
       const std::size_t middle = (first + behind) / 2;
       if (table_[middle].counts > position_.counts)

@@ -18,7 +18,7 @@ struct PitchPoint {
 };
 static_assert(sizeof(PitchPoint) == 12);
 
-/// In ascending order; the deviation is constant before the first and after the last point. Empty: none.
+/// In ascending order; the deviation is constant before the first and after the last point. Empty: no table.
 using PitchTable = std::span<const PitchPoint>;
 
 inline constexpr std::int32_t kLargestDeviation = 1 << 29;  ///< 2^13 counts
@@ -31,7 +31,7 @@ constexpr bool is_valid(const PitchPoint& point) {
   return is_small(point.forward) && is_small(point.backward);
 }
 
-/// Both valid.
+/// Both points are valid.
 constexpr bool may_follow(const PitchPoint& last, const PitchPoint& next) {
   const std::int64_t way = std::int64_t{next.counts} - last.counts;
   const auto is_gentle = [way](std::int64_t change) {

@@ -16,8 +16,8 @@ struct PreslidingParameters {
 
 /// The contact's deflection times its stiffness, v, follows the sliding friction F(w) over the travel:
 ///     dv/dx = sigma0 (1 - v/F),   hence   v(k+1) = F + (v(k) - F) exp(-sigma0 |dx| / |F|),
-/// and the drive must overcome v + sigma1/sigma0 dv/dt. The travel over which v builds up is taken at the mean of the
-/// direction's static and Coulomb friction, so that a step of the control law divides nothing.
+/// and the drive must overcome v + sigma1/sigma0 dv/dt. The travel over which v builds up is computed from the mean of
+/// the direction's static and Coulomb friction, so that a step of the control law needs no division.
 template <typename Scalar>
 class PreslidingFriction {
  public:
@@ -33,7 +33,7 @@ class PreslidingFriction {
     reset();
   }
 
-  /// The contact relaxed, as after standstill without command.
+  /// Relaxes the contact, as after standstill without command.
   constexpr void reset() { deflection_V_ = Scalar(0); }
 
   /// Mean over the period in which the reference moves at `velocity`; `sliding_V` is the friction of that velocity with

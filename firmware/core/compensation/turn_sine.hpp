@@ -7,13 +7,13 @@
 
 namespace firmware {
 
-/// Part of a turn in units of 2^-32 turns; whole turns wrap away.
+/// Part of a turn in units of 2^-32 turns, modulo a whole turn.
 using Turn = std::uint32_t;
 
 inline constexpr Turn kQuarterTurn = Turn{1} << 30;
 
-/// Within 4e-6 in float: the terms of the sine's power series up to the ninth leave (pi/2)^11 / 11! = 3.6e-6 at a
-/// quarter turn.
+/// Error below 4e-6 in float: the sine's power series ends with the ninth power, so the error is (pi/2)^11 / 11! =
+/// 3.6e-6 at a quarter turn.
 template <typename Scalar>
 constexpr Scalar sine_of(Turn turn) {
   // The half turn around 1/2 is the mirror image of that around 0.

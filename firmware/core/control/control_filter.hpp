@@ -10,7 +10,8 @@ namespace firmware {
 
 /// Of a second-order filter with poles s^2 + 2 damping w s + w^2, in state-variable form by the trapezoidal rule
 /// (Zavalishin, The Art of VA Filter Design, ch. 4), prewarped: g = tan(w Ts / 2), a1 = 1 / (1 + g (g + 2 damping)),
-/// a2 = g a1, a3 = g a2. Coefficients keep their digits however slow the filter is against the control rate.
+/// a2 = g a1, a3 = g a2. The coefficients keep their precision even if the filter is slow compared with the control
+/// rate.
 template <typename Scalar>
 struct BiquadParameters {
   bool on = false;
@@ -33,7 +34,7 @@ class ControlFilters {
     reset();
   }
   constexpr bool is_on() const { return is_on_; }
-  /// Assumes that the next input has been constant for long: the output equals it.
+  /// Treats the next input as if it had been constant for long: the output equals it.
   constexpr void reset() { is_new_ = true; }
 
   [[gnu::noinline]] constexpr Scalar next(Scalar value) {

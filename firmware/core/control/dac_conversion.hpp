@@ -37,7 +37,7 @@ class DacConversion {
     return {.code = code, .volts = Traits::times(code, resolution_V_)};
   }
 
-  /// False also for NaN.
+  /// False for NaN as well.
   constexpr bool is_within(Scalar volts) const { return Traits::magnitude(volts) <= limit_V_; }
 
   constexpr std::int32_t max_code() const { return max_code_; }

@@ -9,8 +9,8 @@
 namespace firmware {
 
 /// Characteristic polynomial of a sampled loop, in delta = z - 1: D prod(A) + N prod(B), where N / D is the open loop
-/// without filters and B / A each filter. All products are of positive coefficients, so that nothing cancels in single
-/// precision however slow the poles are against the control rate.
+/// without filters and B / A each filter. All coefficients are positive, so that no digits cancel in single precision,
+/// even if the poles are slow compared with the control rate.
 class FilterLoop {
  public:
   using Quadratic = std::array<float, 3>;  ///< coefficients, the lowest power first
@@ -85,7 +85,7 @@ class FilterLoop {
   constexpr bool is_hurwitz(Polynomial p) const {
     normalise(p);
     if (!(p[degree_] > 0.0f)) return false;
-    // Each round takes the highest power off; its first element must be positive.
+    // Each round removes the highest power; the first element must be positive.
     for (std::size_t top = degree_; top > 0; --top) {
       if (!(p[top - 1] > 0.0f)) return false;
       const float ratio = p[top] / p[top - 1];

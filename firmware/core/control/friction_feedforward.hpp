@@ -66,8 +66,8 @@ class FrictionSteps {
       factor = exp_negative(width / omega);
       rate = level / omega;
     }
-    Scalar share{}, factor{};  ///< of the level, now; of itself, in a step
-    Scalar rate{};             ///< of the level, a rad/s
+    Scalar share{}, factor{};  ///< present share of the level; factor on it per step
+    Scalar rate{};             ///< slope as a share of the level per rad/s
   };
 
   const FrictionDirection<Scalar>& side_;
@@ -155,7 +155,7 @@ class FrictionFeedforward {
     return Scalar(0) - negative_(Scalar(0) - reference_velocity);
   }
 
-  /// The same without the blending: it steps at 0, where it is 0.
+  /// The same without the blending: it jumps at speed 0, where it is 0.
   constexpr Scalar without_blend(Scalar reference_velocity) const {
     if (reference_velocity > Scalar(0)) return positive_(reference_velocity);
     return reference_velocity == Scalar(0) ? Scalar(0) : Scalar(0) - negative_(Scalar(0) - reference_velocity);

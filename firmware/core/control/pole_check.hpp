@@ -22,7 +22,7 @@ inline constexpr float kLeastDamping = 0.1f;
 /// A negative real pole, and the radius of a pair with a negative real part: after ten samples less than a fifth of
 /// such an oscillation may remain.
 inline constexpr float kFastestRinging = 0.85f;
-/// Four of the monitors' load time.
+/// Four times the monitors' load time.
 inline constexpr float kLongestMode_s = 4.0f * kLoadTime_s;
 
 /// Characteristic polynomials in delta = z - 1. At a fast control rate the poles are close to z = 1, where coefficients
@@ -107,7 +107,7 @@ constexpr PoleProblem check(const Cubic& c, float least) {
 
 }  // namespace poles
 
-/// `p` has passed check(). In single precision whatever the scalar: for the background.
+/// `p` has passed check(). Computes in single precision for any scalar: for the background.
 template <typename Scalar>
 constexpr PoleProblem estimator_problem(const AxisParameters<Scalar>& p) {
   return poles::check(poles::of_estimator(p), poles::real(p.monitors.load_share) * (kLoadTime_s / kLongestMode_s));

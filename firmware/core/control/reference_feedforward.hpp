@@ -38,8 +38,8 @@ constexpr ReferenceFeedforward<Scalar> backward_difference_feedforward(const Sta
 ///     n1 = Bd1,  n0 = Ad12 Bd2 - Ad22 Bd1  (feedback leaves zeros where they are),
 ///     d1 = -(trace of Ad - Bd Kc),  d0 = its determinant.
 /// The zero -n0/n1 lies just inside -1 for a drive whose time constant is long compared with Ts: cancelling it would
-/// make the output oscillate at the Nyquist frequency. So nothing is cancelled but D, and N is made to have no phase:
-/// with N(z) the same polynomial in z,
+/// make the output oscillate at the Nyquist frequency. So only D is cancelled, and N gets zero phase: with N(z) the
+/// same polynomial in z,
 ///     v(k) = D(z^-1) N(z) / N(1)^2 xref(k+1)   gives   x/xref = N(z) N(z^-1) / N(1)^2,
 /// which is real, positive and 1 at standstill: 1 - 2 n0 n1 (1 - cos(omega Ts)) / (n0 + n1)^2. It is a filter of four
 /// taps on xref(k+2) .. xref(k-1) with no memory of its own:
@@ -47,7 +47,7 @@ constexpr ReferenceFeedforward<Scalar> backward_difference_feedforward(const Sta
 /// Its taps add up to D(1)/N(1) = Kc1, hence v(k) - Kc1 xref(k) depends on differences of the reference only, that is
 /// on reference velocities, and no position in millimetres is ever multiplied by a gain.
 ///
-/// The first of those velocities takes them all; at a steady one x = xref, so its weight is, on travel,
+/// The weight of wref(k) is the sum of all weights. At a steady velocity x = xref, so this weight is, on travel,
 ///     (Kc2 + h) / (Ad12 + Bd1 h),   h = (1 - Ad22) / Bd2, the volts that keep a velocity.
 template <typename Scalar>
 constexpr ReferenceFeedforward<Scalar> zero_phase_feedforward(const DiscreteDrive<Scalar>& drive,

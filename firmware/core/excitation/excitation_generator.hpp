@@ -25,7 +25,7 @@ class ExcitationGenerator {
     phase_ = 0;
     step_ = std::uint64_t{plan.step} << 32;
     const std::int64_t sweep = std::int64_t{plan.last_step} - std::int64_t{plan.step};
-    // Half of a 64-bit turn is out of reach: below a quarter turn a sample the difference has 31 bits.
+    // No overflow: for frequencies below a quarter turn a sample the difference has 31 bits.
     rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
   }
 

@@ -20,7 +20,7 @@ enum class ExcitationKind : std::uint8_t {
 };
 inline constexpr std::size_t kExcitationKinds = 5;
 
-/// Where it is added.
+/// The point at which the excitation is added.
 enum class ExcitationInput : std::uint8_t {
   open_loop = 0,  ///< it is the whole command; the controller does not act
   reference = 1,  ///< added to the reference, counts
@@ -52,7 +52,7 @@ struct ExcitationBox {
   std::int32_t margin_counts = 0;  ///< stopping distance; 0: unknown, estimated from the axis's own acceleration
   std::int32_t speed = 0;          ///< 1/256 counts in kSpeedSamples, 1..kMostBoxCounts
   Scalar drive_velocity{};         ///< the same for the tachometer, rad/s (m/s); 0: its scale is not known
-  Scalar counts_per_velocity{};    ///< a sample, of the tachometer's unit; 0 likewise
+  Scalar counts_per_velocity{};    ///< counts a sample per unit of the tachometer; 0: its scale is not known
   Scalar volts{};                  ///< largest command of an open loop, and largest addition to a controller's output
 };
 
@@ -74,7 +74,7 @@ struct ExcitationPlan {
   std::uint32_t period = 1;         ///< of ramp (0 to the amplitude), multisine and triangle, samples
   Turn step = 0, last_step = 0;     ///< of a chirp: turns a sample at the beginning and at the end; of a triangle
   std::uint32_t fade_samples = 1;   ///< in which a periodic excitation is faded in and out
-  std::uint32_t stall_samples = 1;  ///< of nine tenths of the amplitude without a count: then nothing moves
+  std::uint32_t stall_samples = 1;  ///< at nine tenths of the amplitude without a count: then the axis does not move
   ExcitationBox<Scalar> box{};
   std::array<ExcitationEntry<Scalar>, kExcitationEntries> entry{};
 };
@@ -104,7 +104,7 @@ constexpr bool is_possible(const ExcitationPlan<Scalar>& p) {
     if (p.kind == ExcitationKind::multisine && Traits::magnitude(p.entry[i].value) > Scalar(kMostReferenceCounts))
       return false;
   }
-  // Only a train suits a jog, and only what returns to its start suits a reference.
+  // Only a train suits a jog, and only an excitation that returns to its start suits a reference.
   if ((p.input == ExcitationInput::jog) != (p.kind == ExcitationKind::train && p.input != ExcitationInput::open_loop))
     return false;
   if (p.kind == ExcitationKind::ramp && p.input != ExcitationInput::open_loop) return false;

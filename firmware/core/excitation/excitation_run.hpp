@@ -34,7 +34,7 @@ enum class ExcitationEnd : std::uint8_t {
 /// the sign of the sum of command times change of speed. The command falls to 0 when the axis reverses, when it has
 /// slowed to the encoder's resolution, or when braking makes it faster. A closed loop stops as its reference does. A
 /// train reverses in time: a drive needs no longer distance to lose its speed under the reversed command than it took
-/// to reach it; friction helps. The additional half is for levels of unequal size.
+/// to reach it; friction helps. A margin of half that distance allows for levels of unequal size.
 template <typename Scalar>
 class ExcitationRun {
  public:
@@ -47,7 +47,7 @@ class ExcitationRun {
     nearly_too_fast_ = plan.box.speed / 320;
     generator_.start(plan);
   }
-  /// In an open loop the axis is enabled when that is allowed; a closed loop is enabled already.
+  /// In an open loop the axis is enabled as soon as this is allowed; a closed loop is enabled already.
   constexpr void start() {
     phase_ = ExcitationPhase::opening;
     end_ = ExcitationEnd::none;
@@ -118,7 +118,7 @@ class ExcitationRun {
       phase_ = ExcitationPhase::running;
       if (is_asked_) leave(ExcitationEnd::asked);
     } else if (axis.state() == SupervisorState::fault ||
-               (axis.state() != SupervisorState::starting && ++waited_ > kLongestOpening)) {  // a start ends by itself
+               (axis.state() != SupervisorState::starting && ++waited_ > kLongestOpening)) {  // starting has a limit
       end_ = ExcitationEnd::refused;
       phase_ = ExcitationPhase::done;
     }
@@ -306,7 +306,7 @@ class ExcitationRun {
       return;
     }
     if (last_ride_ != Scalar(0)) {
-      // A reversal is decided in one sample and requested in the next.
+      // A reversal is decided in one sample and takes effect in the next.
       const Scalar wanted = phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0);
       if (wanted != ride_)
         follow(axis, wanted);
@@ -359,8 +359,8 @@ class ExcitationRun {
   std::uint32_t longest_silence_ = 0;                   ///< under a large command, samples
   std::uint32_t largest_for_ = 0;                       ///< samples of a standstill under a command near the largest
   std::int32_t largest_change_ = 0;                     ///< of speed_ in a sample
-  std::int32_t still_samples_ = 0, still_before_ = 0;   ///< with no more than a flicker: now, and a sample ago
-  std::int32_t still_at_ = 0;                           ///< where
+  std::int32_t still_samples_ = 0, still_before_ = 0;   ///< with at most a flicker: now, and a sample ago
+  std::int32_t still_at_ = 0;                           ///< position of that standstill
   std::int32_t rest_at_ = 0;                            ///< where a longer standstill ended
   Scalar woken_by_{};                                   ///< the command that ended it
   Scalar moved_forward_by_{}, moved_backward_by_{};     ///< largest command that has ended a standstill
@@ -369,7 +369,7 @@ class ExcitationRun {
   std::int32_t way_ = 0;                                ///< from the start
   std::int32_t too_fast_ = 0, nearly_too_fast_ = 0;     ///< counts in kSpeedSamples
   std::int32_t room_ = 0;                               ///< range that a train or a ride may use
-  std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< ways
+  std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< the last positions, from the start
   std::size_t place_ = 0;
   std::int32_t speed_ = 0, speed_before_ = 0;  ///< counts in kSpeedSamples: the last, and those before
   std::int32_t farthest_ = 0, fastest_ = 0;

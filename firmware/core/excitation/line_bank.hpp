@@ -1,4 +1,4 @@
-// The sum of sines of fixed frequencies, a sample at a time: an oscillator a line instead of a sine.
+// The sum of sines of fixed frequencies, sample by sample: each line is an oscillator, so no sine is computed.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ constexpr std::int32_t upper_product(std::int32_t a, std::int32_t b) {
 template <typename Scalar>
 class LineBank {
  public:
-  /// Back at the beginning. Divides, and takes a hundred instructions a line: for the background.
+  /// Starts from the beginning. Divides, and takes a hundred instructions per line: for the background.
   constexpr void prepare(const ExcitationEntry<Scalar>* entries, std::size_t count) {
     using namespace line_bank;
     std::int64_t total = 0;
@@ -114,7 +114,7 @@ class LineBank {
   static_assert(kExcitationEntries % 2 == 0);
   std::array<std::uint64_t, kExcitationEntries> at_{}, begin_{};   ///< sine and cosine of each line
   std::array<std::uint64_t, kExcitationEntries / 2> half_step_{};  ///< sin(angle / 2) of two lines, 2^-31
-  std::int64_t unit_ = 1;                                          ///< what 1 stands for, an increment
+  std::int64_t unit_ = 1;                                          ///< increment that corresponds to 1
   Scalar scalar_unit_{};
 };
 

@@ -9,7 +9,7 @@
 namespace firmware {
 
 enum class HomingMode : std::uint8_t {
-  none = 0,              ///< none: an operator states the position
+  none = 0,              ///< no search: an operator states the position
   home_switch = 1,       ///< the position at which the switch is actuated
   index = 2,             ///< the next index pulse of the encoder
   switch_and_index = 3,  ///< the first index pulse after the switch is actuated
@@ -61,7 +61,7 @@ class HomingSequence {
     phase_ = Phase::idle;
   }
 
-  /// From rest. False if the mode finds nothing.
+  /// Begins from rest. False if the mode has no search.
   constexpr bool begin() {
     if (parameters_.mode == HomingMode::none) return false;
     phase_ = Phase::beginning;

@@ -10,8 +10,8 @@ namespace firmware {
 /// The acceleration moves on a lattice of whole steps: step * s, with s = acceleration limit / ceil(limit / jerk), so
 /// one step a sample keeps the jerk limit and the full acceleration can be reached. While step n is held or approached,
 /// the velocity that braking n, n-1, ..., 1 will still add is s n (n+1) / 2; each sample takes the largest step that
-/// does not add more than is missing. What the lattice cannot express, less than s, is added in one last sample. No
-/// division, no square root: a constant number of operations a sample.
+/// does not add more than the remaining difference. A remainder below s, which the lattice cannot represent, is added
+/// in one last sample. No division, no square root: a constant number of operations a sample.
 class JogProfile {
  public:
   /// `limits` have passed check().
@@ -83,7 +83,7 @@ class JogProfile {
   /// At rest, with nothing left to do.
   constexpr bool at_rest() const { return velocity_ == 0 && target_ == 0 && step_ == 0 && !settling_; }
   constexpr bool at_target() const { return velocity_ == target_ && step_ == 0 && !settling_; }
-  /// The last sample was at the target, and so will be all further ones.
+  /// The last sample was at the target, and all further samples will be.
   constexpr bool is_steady() const { return is_steady_; }
   constexpr Increment velocity() const { return velocity_; }
   /// Towards lower values.
@@ -118,7 +118,7 @@ class JogProfile {
 
   Increment velocity_limit_ = 0;
   Increment acceleration_step_ = 1;
-  std::int32_t most_steps_ = 1;  // below 2^30: so many steps of at least 16 units, and their sum, pass check()
+  std::int32_t most_steps_ = 1;  // below 2^30, because check() limits the sum of that many steps of at least 16 units
   std::int32_t step_ = 0;        ///< >= 0; upward_ gives the direction
   Increment acceleration_ = 0;   ///< acceleration_step_ * step_
   Increment run_out_ = 0;        ///< velocity added while the step falls to 0, one a sample, the present one included

@@ -103,7 +103,7 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   using move_planning::kLongest;
   using move_planning::Ramp;
   MovePlan plan;
-  // Before the sign is turned: -2^63 has no opposite.
+  // Checked before the sign changes, because -2^63 has no negative.
   if (distance.counts >= kFarthestMove || distance.counts < -kFarthestMove) return {plan, Refusal::move_too_long};
   plan.negative = distance.counts < 0;
   if (plan.negative) distance = CountPosition{} - distance;

@@ -40,7 +40,7 @@ class StoppingDistance {
 
  private:
   std::uint64_t reciprocal_ = 0;  ///< 2^(31 + exponent) / acceleration
-  std::int32_t exponent_ = 0;     ///< of the acceleration limit's leading bit
+  std::int32_t exponent_ = 0;     ///< exponent of the acceleration limit's leading bit
   std::int64_t jerk_samples_ = 0;
 };
 

@@ -47,7 +47,7 @@ class PathClock {
     return static_cast<Real>(kRampOfJerk) * (jerk / velocity);
   }
 
-  /// `change` a sample, `ramp` a sample^2, both in 1..kOneCount. Standing.
+  /// `change` per sample, `ramp` per sample^2, both in 1..kOneCount. The clock then stands.
   constexpr void configure(Increment change, Increment ramp) {
     constexpr Increment kSlowest = kOneCount >> 24;  // at 20 kHz a ramp of half a minute
     change_limit_ = std::clamp(change, kSlowest, kOneCount);
@@ -64,7 +64,7 @@ class PathClock {
     target_ = rate;
     target_ahead_ = kUnknown;
   }
-  /// Sets this rate from the next sample on; only while nothing moves, so that no velocity jumps.
+  /// Sets this rate from the next sample on; only while the axes stand, so that no velocity jumps.
   constexpr void begin(Increment rate) {
     rate_ = target_ = rate;
     change_ = 0;
@@ -80,7 +80,7 @@ class PathClock {
     const Increment speed = is_downward ? -change_ : change_;  // towards the target
     const std::uint64_t square = square_of(rate_);
     const Increment ramp = limited(ramp_limit_, square, here);
-    // Slowing down, the ramps become steeper; speeding up, gentler.
+    // The ramps become steeper while slowing down, and gentler while speeding up.
     Increment last_ramp = ramp;
     if (!is_downward) {
       if (ahead != target_ahead_) note_target_ramp(ahead);
@@ -113,7 +113,7 @@ class PathClock {
     const Increment rise = change_ > 0 ? change_ * ramp_samples_ : 0;
     return way_from(std::min(rate_ + rise, kOneCount));
   }
-  /// From any rate.
+  /// The same from any rate.
   constexpr std::int64_t longest_stop() const { return way_from(kOneCount); }
 
  private:
@@ -147,7 +147,7 @@ class PathClock {
            2 * static_cast<std::uint64_t>(path_piece::part_of(d, static_cast<std::uint32_t>(left >> kShift), kShift));
   }
 
-  /// Until the clock slows down as quickly as it may pass twice ramp_samples_, and as many at the end.
+  /// Twice ramp_samples_ pass until the clock slows down as quickly as allowed, and once ramp_samples_ at the end.
   constexpr std::int64_t way_from(Increment rate) const {
     const auto r = static_cast<std::uint32_t>(rate >> (kFractionBits - 31));
     const std::int64_t along = path_piece::part_of(way_from_full_, r, 31) + 3 * ramp_samples_;

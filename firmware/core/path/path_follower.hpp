@@ -1,4 +1,4 @@
-// A path that the host streams and the board follows by itself: all axes led by one clock.
+// A path that the host streams and the board follows by itself, with one clock for all axes.
 #pragma once
 
 #include <atomic>
@@ -86,7 +86,7 @@ class PathFollower {
     phase_ = PathPhase::open;
   }
 
-  /// False before there is anything to follow.
+  /// False if there are no nodes to follow yet.
   constexpr bool start() {
     if (phase_ != PathPhase::open || accepted_ == 0) return false;
     phase_ = PathPhase::running;
@@ -158,7 +158,7 @@ class PathFollower {
     return Refusal::none;
   }
 
-  /// While the control interrupt is disabled.
+  /// Call it while the control interrupt is disabled.
   constexpr Refusal take(Node node, bool last, const Step& step) {
     if (phase_ != PathPhase::open && phase_ != PathPhase::running) return Refusal::path_not_open;
     planned_ = step.there;
@@ -223,7 +223,7 @@ class PathFollower {
 
   // For the control interrupt.
 
-  /// Before the axes' steps, while is_moving(): moves those of the mask. For an AxisGroup.
+  /// Call it before the axes' steps, while is_moving(): moves the axes of the mask. `group`: an AxisGroup.
   template <typename Group>
   constexpr void before_step(Group& group) {
     for (std::size_t i = 0; i < axes; ++i)
@@ -339,7 +339,7 @@ class PathFollower {
   PathUnits units_{};
   PathPhase phase_ = PathPhase::idle;
   PathEnd end_ = PathEnd::none;
-  bool is_complete_ = false;   ///< the last node is there
+  bool is_complete_ = false;   ///< the last node has arrived
   bool ends_at_rest_ = false;  ///< the newest node is at rest
   bool is_held_ = false;
   bool is_starved_ = false;       ///< stops because the nodes might not last
@@ -356,11 +356,11 @@ class PathFollower {
   std::array<CountPosition, axes> start_{}, planned_{};
   Ends newest_{}, prepared_to_{};
   std::array<PathLimits, axes> limits_{};
-  std::uint64_t run_out_ = 0;    ///< until a clock that changes does not change any more, 2^-kPathTimeBits samples
-  std::uint64_t made_time_ = 0;  ///< of the nodes that are polynomials, likewise
-  std::uint8_t near_ = 0;        ///< headroom of the part just before the next node
+  std::uint64_t run_out_ = 0;    ///< path time until a changing clock is steady again, 2^-kPathTimeBits samples
+  std::uint64_t made_time_ = 0;  ///< path time of the nodes that are polynomials, 2^-kPathTimeBits samples
+  std::uint8_t near_ = 0;        ///< headroom of the path just before the next node
   std::size_t ring_first_ = 0, ring_count_ = 0;
-  std::atomic<std::uint32_t> made_ = 0, used_ = 0;  // pieces: written by the background, by the control interrupt
+  std::atomic<std::uint32_t> made_ = 0, used_ = 0;  // pieces: the background writes made_, the interrupt used_
   std::array<PathPiece<axes>, kPrepared> pieces_{};
   std::array<Node, nodes> ring_{};
 };

@@ -11,12 +11,12 @@
 
 namespace firmware {
 
-/// Of one axis, in counts and samples.
+/// Limits of one axis, in counts and samples.
 struct PathLimits {
   float velocity = 0, acceleration = 0, jerk = 0;
 };
 
-/// Of one piece, as parts of the limits; travel in counts from its beginning.
+/// Load of one piece, as parts of the limits; travel in counts from its beginning.
 template <std::size_t axes>
 struct PathLoad {
   float velocity = 0, acceleration = 0;  ///< largest of all axes
@@ -24,7 +24,7 @@ struct PathLoad {
   float left = 1;
   std::array<float, axes> least{}, most{};
 
-  /// The number of the headroom that leaves this much.
+  /// Index into kHeadrooms of the headroom that leaves this part.
   std::uint8_t headroom() const {
     std::uint8_t number = 0;
     while (number + 1u < kHeadrooms.size() && kLeft[number + 1u] <= left) ++number;

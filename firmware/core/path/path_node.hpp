@@ -19,7 +19,7 @@ constexpr bool is_possible(const PathUnits& units) {
          units.acceleration_bits >= 17 && units.acceleration_bits <= 40;
 }
 
-/// Of one axis at the end of a piece of the path, which begins at the previous node.
+/// Motion of one axis at the end of a piece of the path, which begins at the previous node.
 struct PathAxisNode {
   std::int32_t travel = 0;        ///< since the node before, in units
   std::int32_t velocity = 0;      ///< here

@@ -26,8 +26,8 @@ constexpr std::int64_t scaled(std::int64_t value, std::uint32_t factor, int shif
   return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>(of_low >> shift);
 }
 
-/// value * share / 2^32, downwards; `share` in 2^-31, below 1. Two long multiplications; four where the compiler knows
-/// of either factor in 64 bits.
+/// value * share / 2^32, downwards; `share` in 2^-31, below 1. Two long multiplications; four if the compiler sees that
+/// either factor has 64 bits.
 constexpr std::int64_t half_of_share(std::int64_t value, std::uint32_t share) {
   auto upper = static_cast<std::int32_t>(value >> 32);
   hide_origin(upper);
@@ -35,7 +35,7 @@ constexpr std::int64_t half_of_share(std::int64_t value, std::uint32_t share) {
   return std::int64_t{upper} * static_cast<std::int32_t>(share) + static_cast<std::uint32_t>(lower >> 32);
 }
 
-/// The same where nothing is below 0, 0 <= shift <= 32.
+/// The same for values >= 0, 0 <= shift <= 32.
 constexpr std::int64_t part_of(std::int64_t value, std::uint32_t factor, int shift) {
   const std::uint64_t high = std::uint64_t{static_cast<std::uint32_t>(value >> 32)} * factor;
   const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(value)} * factor;
@@ -46,7 +46,7 @@ constexpr std::int64_t shifted(std::int64_t value, int left) { return left >= 0 
 
 constexpr bool fits(std::int64_t value) { return value >= -kMost && value <= kMost; }
 
-/// As position terms, times the duration: V = v T, A = a T^2.
+/// Velocity and acceleration as position terms: V = v T, A = a T^2, with the duration T.
 struct Ends {
   std::int64_t travel = 0, begin_velocity = 0, end_velocity = 0, begin_acceleration = 0, end_acceleration = 0;
 };
@@ -105,11 +105,11 @@ class PathPiece {
     return piece;
   }
 
-  /// Numbers of kHeadrooms.
+  /// Index into kHeadrooms.
   constexpr std::uint32_t headroom_here() const { return headroom_here_; }
   constexpr std::uint32_t headroom_ahead() const { return headroom_ahead_; }
 
-  /// Samples, as kOneCount a sample.
+  /// Unit: kOneCount per sample.
   constexpr Increment duration() const { return duration_; }
 
   /// The share of the duration that has passed, in 2^-31. 0 <= time < duration().
@@ -147,8 +147,8 @@ class PathPiece {
   };
   Increment duration_ = 0;
   std::uint8_t headroom_here_ = 0, headroom_ahead_ = 0;
-  std::uint8_t shift_ = 0;        ///< makes a time of 32 bits, whose highest is set where it is the duration
-  std::uint32_t reciprocal_ = 0;  ///< 2^63 / that duration
+  std::uint8_t shift_ = 0;        ///< scales a time to 32 bits; the highest bit of the scaled duration is set
+  std::uint32_t reciprocal_ = 0;  ///< 2^63 / the scaled duration
   std::array<Polynomial, axes> axis_{};
 };
 

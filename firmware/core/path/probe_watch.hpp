@@ -23,7 +23,7 @@ enum class ProbeStop : std::uint8_t {
 /// ignored.
 class ProbeWatch {
  public:
-  /// `samples`: that while, control periods.
+  /// `samples`: control periods for which the input must have the expected state.
   constexpr void configure(ProbeContact contact, ProbeStop stop, std::int32_t samples) {
     contact_ = contact;
     stop_ = stop;

@@ -57,7 +57,7 @@ class AxisGroup {
     return kAxes;
   }
 
-  /// Homing stands still for a moment between its searches.
+  /// An axis that homes counts as in motion: it stands still for a moment between its searches.
   constexpr bool is_in_motion(std::size_t index) const {
     const BoardAxis& axis = axes_[index];
     return axis.is_or_will_be_on() && (!axis.is_at_rest() || axis.is_homing());

@@ -19,7 +19,7 @@ class AxisIndex {
   }
   constexpr void restart() { monitor_.restart(); }
 
-  /// Call it once in each control period in which nobody else has read the index.
+  /// Call it once in each control period in which the index has not been read otherwise.
   constexpr bool is_due() { return --until_ <= 0; }
 
   /// Pulses since the last reading; `counter`: the encoder's, now.

@@ -80,7 +80,7 @@ class AxisMonitors {
   /// From now on positions are counted from another origin.
   constexpr void forget_travel() { travel_.restart(); }
 
-  /// The smaller of the two sensors' speeds: a speed that both show is no fault of one sensor.
+  /// The smaller of the two sensors' speeds: a speed that both sensors show is not a sensor fault.
   constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
     const Scalar encoder = Traits::times(seen.encoder_travel, velocity_per_count_);
     const bool is_slower = tachometer_fitted_ && magnitude(seen.tachometer_velocity) < magnitude(encoder);
@@ -132,7 +132,7 @@ class AxisMonitors {
   Scalar encoder_velocity_{};
   Scalar disagreement_{};
   Scalar high_water_{};
-  Scalar noted_error_{};  ///< up to this an error is neither a fault nor new; saves 5 instructions a step
+  Scalar noted_error_{};  ///< an error up to this is neither a fault nor a new maximum; saves 5 instructions a step
   std::int32_t saturated_samples_ = 0;
   bool tachometer_fitted_ = true;
   EffortMonitor<Scalar> effort_;

@@ -22,7 +22,7 @@ struct BoardLimits {
   std::uint32_t control_period_us = 1000;
   std::uint32_t longest_period_us = 1500;  ///< from one control period to the next
   std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
-  std::int32_t standing_samples = 60'000;  ///< the same while the enabled axes are at rest
+  std::int32_t standing_samples = 60'000;  ///< longest silence while the enabled axes are at rest
   std::int32_t input_samples = 3;          ///< in which the stop circuit must be open
   std::int32_t stop_samples = 0;           ///< for which axes may slow down after it; 0: stop category 0
 };
@@ -62,7 +62,7 @@ class BoardWatch {
   constexpr void forget_left_alone() { was_left_alone_ = false; }
   /// While the axes are being stopped together because of the silence, the silence is not a fault.
   constexpr void excuse_silence(bool excused) { excuses_silence_ = excused; }
-  /// The stop circuit is open, or has been and its delay runs; and the delay is over.
+  /// is_stopped(): the stop circuit is open, or was open and its delay still runs. The other: the delay is over.
   constexpr bool is_stopped() const { return is_stopped_; }
   constexpr bool is_stop_due() const { return stop_left_ < 0; }
   /// The host commands motion and has been silent for too long, and the outputs are on.
@@ -102,8 +102,8 @@ class BoardWatch {
   }
 
  private:
-  /// Stop category 1: until the delay is over the axes are disabled as by request, each along its ramp. Whether the
-  /// enables must drop. A short press is a stop, too.
+  /// Returns whether the enables must drop. Stop category 1: until the delay is over, the axes are disabled as by
+  /// request, each along its ramp. A short press is also a stop.
   template <std::invocable Disable>
   [[gnu::noinline]] constexpr bool watch_stop(bool is_open_now, Disable disable) {
     const bool is_open = stop_.filtered(is_open_now);

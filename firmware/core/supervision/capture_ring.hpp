@@ -46,7 +46,7 @@ class CaptureRing {
   constexpr const AxisSample<Scalar>& row(std::size_t index) const {
     return rows_[is_full_ ? (next_ + index) % kCaptureRows : index];
   }
-  /// The newest row; all zero while there is none.
+  /// The newest row; all zero if there is no row yet.
   constexpr const AxisSample<Scalar>& last() const { return rows_[(next_ + kCaptureRows - 1) % kCaptureRows]; }
   /// Samples from one row to the next.
   constexpr std::int32_t stride() const { return stride_; }

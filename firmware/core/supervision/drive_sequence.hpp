@@ -16,7 +16,7 @@ struct DriveSequenceParameters {
   std::int32_t brake_application = 0;  ///< from the application until the brake holds the axis
 };
 
-/// What the states starting and stopping wait for (firmware/README.md has the diagram).
+/// Phases of the states starting and stopping (firmware/README.md has the diagram).
 enum class DrivePhase : std::uint8_t {
   none,
   energising,  ///< enable on, loop open: until the amplifier is ready
@@ -29,7 +29,7 @@ enum class DriveStep : std::uint8_t {
   close_loop,  ///< the amplifier is ready: close the loop and release the brake
   started,     ///< the axis may move
   late,        ///< the amplifier does not become ready
-  held,        ///< by the brake, if there is one: the enable may drop
+  held,        ///< held by the brake, if there is one: the enable may drop
 };
 
 /// Always true for an amplifier without this signal.
@@ -46,7 +46,7 @@ class DriveSequence {
   constexpr void configure(const DriveSequenceParameters& parameters) { parameters_ = parameters; }
   constexpr const DriveSequenceParameters& parameters() const { return parameters_; }
 
-  /// Nothing to wait for: the loop closes in the control period of the enable.
+  /// There is nothing to wait for: the loop closes in the control period of the enable.
   constexpr bool starts_at_once() const {
     return !parameters_.ready_input && parameters_.amplifier_wait == 0 && release_samples() == 0;
   }
@@ -93,7 +93,7 @@ class DriveSequence {
 
   DriveSequenceParameters parameters_{};
   DrivePhase phase_ = DrivePhase::none;
-  std::int32_t samples_ = 0;  ///< in the phase
+  std::int32_t samples_ = 0;  ///< since the phase began
 };
 
 }  // namespace firmware

@@ -43,7 +43,7 @@ class DropWatch {
 
  private:
   static constexpr std::int32_t kFilterSamples = 8;   ///< so that noise on the encoder does not count as motion
-  static constexpr std::int32_t kMostSamples = 4000;  ///< of kTime_s at 20 kHz, twice
+  static constexpr std::int32_t kMostSamples = 4000;  ///< twice the samples of kTime_s at 20 kHz
 
   Scalar velocity_{}, most_{};
   std::int32_t while_samples_ = 1, brake_samples_ = 0, left_ = 0, ready_samples_ = 0;

@@ -6,7 +6,7 @@
 
 namespace firmware {
 
-/// Needs neither the estimator nor the friction curve, so that a fault of either cannot hide from it.
+/// Needs neither the estimator nor the friction curve, so that it also works if either is wrong.
 ///
 /// Missing speed. A command beyond any friction must change the speed. The part beyond friction gives a change by the
 /// sampled drive (7); half of it is required, because the inertia may be twice the model's. The part of that half that
@@ -58,7 +58,7 @@ class EffortMonitor {
  private:
   using Traits = ScalarTraits<Scalar>;
 
-  /// Effect of the last sample's command until this sample.
+  /// Compares the effect of the last sample's command with this sample's speed.
   constexpr AxisFault compare(Scalar velocity) {
     if (Traits::magnitude(applied_V_) <= friction_V_) {  // nearly always
       debt_ = Scalar(0);

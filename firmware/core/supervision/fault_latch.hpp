@@ -44,7 +44,7 @@ class FaultLatch {
     activity_ = activity;
     was_homed_ = homed;
   }
-  /// Keeps the first of the worst kind among the faults before the outputs are off.
+  /// Keeps the first of the most severe faults that occur before the outputs are off.
   constexpr void add(AxisFault found) {
     if (found == first_ || (second_ != AxisFault::none && (!is_worse(found) || is_worse(second_)))) return;
     second_ = found;

@@ -1,4 +1,4 @@
-// Checks the monitors' thresholds: with the highest that are accepted, each monitor still protects. That is the motion
+// Checks the monitors' thresholds. Each monitor still protects with the highest accepted threshold. This is the motion
 // of an axis at full command from standstill in the times below, or the value that a moving axis needs if that is
 // larger.
 #pragma once
@@ -15,7 +15,8 @@ inline constexpr float kFollowingTime_s = 0.1f;  ///< of the velocity limit, and
 inline constexpr float kSaturation_s = 1.0f;
 inline constexpr float kCommandShare = 0.9f, kOscillationShare = 0.7f;  ///< of the converter's limit
 
-/// Comparisons are multiplied by a sample's share of kLoadTime_s: so they stay within the range of fixed point.
+/// Both sides of a comparison are multiplied by a sample's share of kLoadTime_s, to stay within the range of fixed
+/// point.
 template <typename Scalar>
 struct Scaled {
   Scalar share, full_change, fastest, count;

@@ -14,18 +14,18 @@
 
 namespace firmware {
 
-/// mm (m), rad/s (m/s), V, samples, counts. No monitor may be switched off but that of a part that need not be fitted
+/// Units: mm (m), rad/s (m/s), V, samples, counts. Only the monitor of an optional part may be switched off
 /// (check_monitors()).
 template <typename Scalar>
 struct MonitorLimits {
   Scalar following_error_floor{};         ///< following error that is allowed at standstill, > 0
-  Scalar following_error_per_velocity{};  ///< what each rad/s (m/s) of reference velocity adds to it, mm s/rad (s)
+  Scalar following_error_per_velocity{};  ///< its increase per rad/s (m/s) of reference velocity, mm s/rad (s)
   Scalar disagreement_floor{};            ///< difference of encoder and tachometer, allowed at standstill, > 0
-  Scalar disagreement_share{};            ///< what it may grow to, as a share of the speed; 0..1
+  Scalar disagreement_share{};            ///< allowed difference as a share of the speed; 0..1
   Scalar encoder_jump{};                  ///< the same difference within one sample, > disagreement_floor
   Scalar overspeed{};                     ///< > 0
   Scalar polarity_command_V{};            ///< a command beyond any friction: it must accelerate the drive; > 0
-  Scalar oscillation_V{};                 ///< rms that the feedback may swing by, > 0
+  Scalar oscillation_V{};                 ///< allowed rms oscillation of the feedback, > 0
   std::int64_t travel_min_counts = 0;
   std::int64_t travel_max_counts = 0;   ///< > travel_min_counts
   std::int32_t index_spacing = 0;       ///< counts from one index pulse to the next; 0: not watched
@@ -41,8 +41,8 @@ struct MonitorLimits {
 inline constexpr int kDisagreementShift = 4;
 /// A command that lasts this long is needed for the load (effort_monitor.hpp).
 inline constexpr float kLoadTime_s = 0.5f;
-/// The swing of the feedback is what exceeds its mean over this time, and is averaged over the longer one. Reference
-/// ramps last longer than the first; friction's jump at a reversal is small within the second.
+/// The oscillation of the feedback is its deviation from its mean over the first time, averaged over the second.
+/// Reference ramps last longer than the first; friction's jump at a reversal is small within the second.
 inline constexpr float kTransientTime_s = 0.008f, kSwingTime_s = 0.1f;
 /// Samples for which the inputs are checked before an axis is ready; three time constants of the filter above.
 inline constexpr std::int32_t kSelfTestSamples = 50;
@@ -177,7 +177,7 @@ constexpr auto fixed(Kept value, Quantity quantity, const Units& unit) {
 template <typename Scalar>
 inline constexpr auto kThresholds = threshold_table::rows<Scalar>();
 
-/// The parameters alone.
+/// Only the parameters' rows.
 inline constexpr std::array kThresholdRows =
     std::apply([](const auto&... each) { return std::array{each.row...}; }, kThresholds<float>);
 
@@ -190,7 +190,7 @@ constexpr void for_each_threshold(Visit visit) {
   visit_all(std::make_index_sequence<kThresholdRows.size()>());
 }
 
-/// So that the hundred intervals of a capture span at least 0.1 s.
+/// Chosen so that the hundred intervals of a capture span at least 0.1 s.
 template <typename Real>
 constexpr std::int32_t capture_stride(Real samples_a_second) {
   return (ScalarTraits<Real>::truncate(samples_a_second * Real(0.1f) + Real(0.5f)) - 1) / 100 + 1;

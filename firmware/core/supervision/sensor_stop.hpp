@@ -19,9 +19,9 @@ enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 /// without estimator and other sensor. `load` is the mean command, mainly due to a weight. If the drive slows down by
 /// itself, the reference follows. The enable drops if the drive is not under control: it is faster than the reference
 /// by twice the allowed difference of the sensors, or moves in the other direction by as much, or needs the converter's
-/// whole range for kMostSaturated. It also drops if the drive stands by its sensor while half of that is added to the
-/// load. If the sensors diverged near rest, where the faulty one is unknown, it drops if the tachometer then gains as
-/// much.
+/// whole range for kMostSaturated. It also drops if the sensor shows standstill while half of that range is added to
+/// the load. If the sensors diverged near rest, where the faulty one is unknown, it drops if the tachometer's speed
+/// then grows by as much.
 template <typename Scalar>
 class SensorStop {
  public:
@@ -38,9 +38,9 @@ class SensorStop {
     end();
   }
 
-  /// The sensor to use after a fault. If two sensors diverge it is the encoder, unless that shows less than an eighth
-  /// of the reference's speed: the loop follows a faulty tachometer, so that the drive leaves the reference and the
-  /// tachometer does not.
+  /// The sensor to use after a fault. If two sensors diverge, it is the encoder, unless the encoder shows less than an
+  /// eighth of the reference's speed. If the tachometer is faulty, the loop follows it, so that the drive leaves the
+  /// reference and the tachometer does not.
   constexpr TrustedSensor trusted_after(AxisFault fault, const AxisTelemetry<Scalar>& seen) const {
     if (fault == AxisFault::tachometer_invalid || (!tachometer_fitted_ && fault == AxisFault::following_error))
       return TrustedSensor::encoder;
@@ -53,7 +53,7 @@ class SensorStop {
     return along(encoder_velocity(seen)) >= least ? TrustedSensor::encoder : TrustedSensor::tachometer;
   }
 
-  /// `load_V`: the command's mean.
+  /// `load_V`: mean command.
   constexpr void begin(TrustedSensor trusted, AxisFault fault, const AxisTelemetry<Scalar>& seen, Scalar load_V) {
     trusted_ = trusted;
     is_doubtful_ = fault == AxisFault::encoder_tachometer_disagreement && uses_encoder() && is_slow(seen);
@@ -72,7 +72,7 @@ class SensorStop {
   /// After each step(), with its output command_V(). False once the drive does not follow.
   constexpr bool next(const AxisTelemetry<Scalar>& seen) {
     const Scalar change = measured(seen) - velocity_;
-    velocity_ = velocity_ + change * Scalar(0.5f);  // a count in a sample is coarse
+    velocity_ = velocity_ + change * Scalar(0.5f);  // averaged, because one count in a sample is coarse
     slow_down();
     const Scalar lacking = reference_ - velocity_;
     const Scalar error = error_ + lacking * travel_per_velocity_;

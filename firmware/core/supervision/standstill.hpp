@@ -7,7 +7,7 @@ namespace firmware {
 
 class Standstill {
  public:
-  static constexpr std::int32_t kSamples = 20;  ///< for which an axis must be at rest
+  static constexpr std::int32_t kSamples = 20;  ///< samples for which an axis must be at rest
 
   /// `play`: counts within which a closed loop holds its position (TravelMonitor), >= 2. An axis without a closed loop
   /// has an eighth of that: friction or the brake holds it, and it does not move.
@@ -16,7 +16,7 @@ class Standstill {
     slack_ = 2 + (play - 2) / 8;
   }
 
-  /// Each sample of an open loop.
+  /// Call it in each sample of an open loop.
   constexpr void watch(std::int64_t counts) {
     if (samples_ < kSamples) ++samples_;
     if (is_within(counts, still_at_, play_)) return;

@@ -19,7 +19,8 @@ class StopEnd {
 
   constexpr void begin() { settling_samples_ = standing_samples_ = samples_ = 0; }
 
-  /// Each sample after begin(). `is_held`: by a closed loop; an axis that nothing holds only needs to come to rest.
+  /// Call it in each sample after begin(). `is_held`: by a closed loop; an axis that nothing holds only needs to come
+  /// to rest.
   constexpr bool has_stopped(bool reference_at_rest, bool is_held, std::int64_t counts) {
     if (++samples_ > longest_) return true;
     if (!is_held) settling_samples_ = 0;

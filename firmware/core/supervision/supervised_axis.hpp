@@ -27,8 +27,8 @@ class SupervisedAxis {
   explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) { axis_.leave_sensors_to_supervisor(); }
 
   /// Takes new parameters and begins the self-test; if they are wrong, returns why and keeps the old ones. Only while
-  /// the outputs are off. `ShutOut` keeps the control interrupt away for its beginning and its end alone: in between,
-  /// which is long, the axis stands aside, and its steps do nothing.
+  /// the outputs are off. `ShutOut` disables the control interrupt only at the beginning and at the end. In the long
+  /// part between them the axis's steps do nothing.
   template <typename ShutOut = NoShutOut>
   constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
     return take<ShutOut>(parameters, check_supervised(parameters));
@@ -49,7 +49,8 @@ class SupervisedAxis {
   }
   constexpr void excite(Scalar volts) { axis_.excite(volts); }  ///< as of Axis
   /// Ready, and the encoder has been at rest for a while: a loop that closes on a moving axis would stop it with a
-  /// jerk. The amplifier's ready contact is open: while it is closed it cannot tell when the amplifier drives.
+  /// jerk. The amplifier's ready contact must be open: a closed contact could not show when the amplifier begins to
+  /// drive.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands() && !says_ready(); }
   constexpr bool stands() const { return standstill_.stands(); }
   /// Slows down, then drops the enable.
@@ -122,7 +123,7 @@ class SupervisedAxis {
 
   constexpr std::int64_t table_counts_at(std::uint32_t reading) const { return axis_.table_counts_at(reading); }
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
-  /// It read the index in its last step; the others of a group do so in other samples.
+  /// Whether it read the index in its last step; the other axes of a group read theirs in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
   constexpr void leave_index_for_later() { index_.leave_for_later(); }
   /// As for Axis, before a late step.
@@ -175,7 +176,7 @@ class SupervisedAxis {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
   }
   constexpr AxisFault fault() const { return latched_.first(); }
-  /// Whether it occurred since the last call.
+  /// Whether a new fault occurred since the last call.
   constexpr bool take_new_fault() { return latched_.take_new(); }
   constexpr AxisFault second_fault() const { return latched_.second(); }
   /// The fault that stopped it since the last clear_fault().
@@ -230,7 +231,7 @@ class SupervisedAxis {
     return error;
   }
 
-  /// A jog ends where the play of a loop that holds its position stays within the limit.
+  /// Ends a jog so early that the play of a loop that holds its position stays within the limit.
   [[gnu::noinline]] constexpr void keep_inside() {
     if (!is_homed()) return;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
@@ -252,7 +253,7 @@ class SupervisedAxis {
     const bool is_lost = sensor_stop_.uses_encoder() && !encoder.valid;
     axis_.step_with_command(encoder, sensor_stop_.command_V(), sensor_stop_.velocity());
     const AxisFault own = watch_lines();
-    if (reaction_to(outer) != FaultReaction::drop_enable) outer = AxisFault::none;  // it stops already
+    if (reaction_to(outer) != FaultReaction::drop_enable) outer = AxisFault::none;  // the axis stops already
     if (!sensor_stop_.next(axis_.telemetry()) || is_lost) requests_ = requests_ | SupervisorEvent::drop_fault;
     advance(outer, own);
   }
@@ -374,7 +375,7 @@ class SupervisedAxis {
     return 0;
   }
 
-  /// The rare cases: faults, requests, and all states except a closed loop in normal operation.
+  /// Handles the rare cases: faults, requests, and all states except a closed loop in normal operation.
   [[gnu::noinline]] constexpr void advance(AxisFault outer, AxisFault own) {
     SupervisorEvents events = requests_;
     requests_ = 0;
@@ -483,7 +484,7 @@ class SupervisedAxis {
   IncrementLimits increments_;
   Increment led_increment_ = 0;
   bool is_led_ = false;
-  bool is_guided_ = false;  ///< led, looking for home or aside: the next step may be another one
+  bool is_guided_ = false;  ///< on a path, homing or being configured: the next step may be a different one
   bool stands_aside_ = false;
   std::int32_t self_test_samples_ = 0;
   Standstill standstill_;

@@ -18,7 +18,7 @@ concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
 /// For use without interrupts.
 struct NoShutOut {};
 
-/// Limitations of the motion that are not faults.
+/// Limits that the motion reached without a fault.
 struct LimitingReasons {
   bool saturated = false;         ///< the D/A converter is at its limit
   bool velocity_limited = false;  ///< a jog exceeded the velocity limit and was reduced to it

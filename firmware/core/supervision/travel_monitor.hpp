@@ -18,7 +18,8 @@ namespace firmware {
 template <typename Scalar>
 class TravelMonitor {
  public:
-  /// Counts: `stop`, the longest stopping distance of a jog; `beyond`, what compensation may add to a reference inside.
+  /// Counts: `stop`, the longest stopping distance of a jog; `beyond`, the largest offset that compensation adds to a
+  /// reference.
   constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop, std::int64_t beyond = 0) {
     beyond_ = beyond;
     min_counts_ = p.monitors.travel_min_counts;
@@ -41,7 +42,7 @@ class TravelMonitor {
   /// The largest following error that is not a fault.
   static constexpr std::int64_t error_in_counts(const AxisParameters<Scalar>& p) {
     using Traits = ScalarTraits<Scalar>;
-    // Beyond, travel is looked at in every sample. The range of fixed point, whose unit is a count, is 1024.
+    // Above this limit, travel is checked in every sample. The range of fixed point, whose unit is a count, is 1024.
     constexpr Scalar kMost = Scalar(std::is_floating_point_v<Scalar> ? 1e6f : 1000.0f);
     const MonitorLimits<Scalar>& m = p.monitors;
     const Scalar floor = m.following_error_floor / p.encoder_resolution;
@@ -83,7 +84,7 @@ class TravelMonitor {
     return watch_ends(seen, switches);
   }
 
-  /// A homed axis that could reach an end before it has stopped, or an axis of which that is unknown.
+  /// Whether a homed axis could reach an end before it has stopped, or whether this is unknown.
   constexpr bool is_near_end() const { return is_near_end_; }
 
  private:

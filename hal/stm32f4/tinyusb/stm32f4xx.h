@@ -1,5 +1,5 @@
-// What TinyUSB's driver for the STM32F4 asks of ST's header of this name, which Debian does not have. Sections of
-// RM0090 and, for the interrupt controller, of the ARMv7-M Architecture Reference Manual.
+// The parts of ST's header of this name that TinyUSB's driver for the STM32F4 needs; Debian does not have that header.
+// Sections of RM0090 and, for the interrupt controller, of the ARMv7-M Architecture Reference Manual.
 #pragma once
 
 #include <stdint.h>
@@ -10,7 +10,7 @@ typedef enum { OTG_FS_IRQn = 67 } IRQn_Type;  // table 62
 #define USB_OTG_FS_MAX_IN_ENDPOINTS 4u      // 34.2: endpoint 0 and three more
 #define USB_OTG_FS_TOTAL_FIFO_SIZE 1280u    // 34.2, bytes
 
-/// The driver asks for nothing but whether the bus clock exceeds 32 MHz (34.16.2, TRDT).
+/// The driver only checks whether the bus clock exceeds 32 MHz (34.16.2, TRDT).
 static const uint32_t SystemCoreClock = 168000000u;
 
 /// B3.4.4 and B3.4.5.

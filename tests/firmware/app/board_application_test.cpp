@@ -160,8 +160,8 @@ TYPED_TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
   EXPECT_NEAR(static_cast<double>(axis.counts()), static_cast<double>(target), 2.0);
 }
 
-/// Moves by any number of counts, of a homed axis and of one that is not homed: the board answers, and the axis does
-/// not move.
+/// Move requests by any number of counts, for a homed axis and for one that is not homed: the board answers, and the
+/// axis does not move.
 TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
                          kMost = std::numeric_limits<std::int64_t>::max();
@@ -238,7 +238,7 @@ TYPED_TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
   EXPECT_NEAR(periods_until_a_stop<typename TestFixture::Bench>(0.05), 50, 2);
 }
 
-/// A change in motion does not pause the monitor: a late interrupt after it is still found.
+/// A change of parameters in motion does not pause the monitor: a late interrupt after it is still detected.
 TYPED_TEST(BoardMotion, AParameterChangeHidesNoOverrun) {
   typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
@@ -315,7 +315,7 @@ TYPED_TEST(Capture, SendsEveryRowOnceAndInOrder) {
   using Tested = typename TestFixture::Bench;
   expect_all_rows<Tested>({{1u << 1}, 1, 0}, 1);
   expect_all_rows<Tested>({{0x1F}, 3, 0}, 5);
-  firmware::CaptureRequest full{{0x7FF >> (TestFixture::kAxes - 1)}, 1, 0};  // twelve words with those of the others
+  firmware::CaptureRequest full{{0x7FF >> (TestFixture::kAxes - 1)}, 1, 0};  // twelve words with all axes
   for (std::size_t axis = 1; axis < TestFixture::kAxes; ++axis) full.channels[axis] = axis == 1 ? 3 : 1;
   expect_all_rows<Tested>(full, full.words());
 }
@@ -352,7 +352,7 @@ TYPED_TEST(Capture, LossIsCountedAndShowsInTheNumbersOfRows) {
   }
   EXPECT_EQ(taken.rows, 500u);
   EXPECT_GT(taken.dropped, 0u);
-  EXPECT_EQ(numbers.size(), taken.rows - taken.dropped) << "what was not dropped arrives";
+  EXPECT_EQ(numbers.size(), taken.rows - taken.dropped) << "every row that was not dropped arrives";
 }
 
 TYPED_TEST(Capture, RefusesWhatDoesNotFitAReport) {
@@ -442,7 +442,7 @@ TEST(FixedPointProtocol, SpeaksThePhysicalUnitsOfRequests) {
   }
   const firmware::AxisStatus axis = bench.status().axis[0];
   const double travel_mm = static_cast<double>(axis.counts() - before) * firmware_test::kEncoderResolution_mm;
-  EXPECT_NEAR(travel_mm, 20.0, 1.5) << "one second at 20 mm/s, less the time to get going";
+  EXPECT_NEAR(travel_mm, 20.0, 1.5) << "one second at 20 mm/s, less the acceleration";
   EXPECT_NEAR(axis.velocity, 20.0 / firmware_test::kLead_mm_per_rad, 1.0);
 }
 

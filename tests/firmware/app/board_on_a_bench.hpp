@@ -47,7 +47,7 @@ struct BoardOnABench {
   firmware::ProtocolServer<Application> server{application, image, {}};
   std::uint16_t sequence = 0;
   std::uint16_t client = 1;  ///< the requesting client
-  std::uint8_t pass = 0;     ///< likewise
+  std::uint8_t pass = 0;     ///< pass of the requesting client
 
   static typename Board::Drives machines() {
     typename Board::Drives drives;
@@ -66,7 +66,7 @@ struct BoardOnABench {
     return wiring;
   }
 
-  /// Starts with what the flash holds.
+  /// Starts with the present contents of the flash.
   explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr) {
     if (flash != nullptr) board.parameter_flash() = *flash;
     board.usb().plug_in();
@@ -108,7 +108,7 @@ struct BoardOnABench {
     return reply;
   }
 
-  /// Stages what differs from the active set and commits.
+  /// Stages all values that differ from the active set, and commits.
   firmware::Message download(const firmware::ParameterValues& values) {
     EXPECT_EQ(ask(firmware::MessageType::begin_staging, firmware::BeginRequest{}).status, firmware::Status::ok);
     firmware::ValuesPayload part;

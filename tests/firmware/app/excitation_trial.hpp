@@ -120,7 +120,7 @@ class ExcitationTrial {
   firmware::ExcitationEnd end() const { return static_cast<firmware::ExcitationEnd>(state_.end); }
   bool is_on() const { return is_on_; }
   double final_speed() const { return final_speed_; }
-  /// Friction's last creep in the simulation.
+  /// Speed of the last creep against friction in the simulation.
   double standing_speed() const {
     return 0.01 * static_cast<double>(request_.speed) * drive_.data.encoder_resolution * 1000.0;
   }

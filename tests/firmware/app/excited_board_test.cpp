@@ -39,7 +39,8 @@ TEST(ExcitedBoard, LeavesItsBoxByNoMoreThanTheWayOfItsStop) {
     if (HasFailure()) return;
   }
   for (const auto& [end, count] : ends) RecordProperty("ended_" + std::to_string(static_cast<int>(end)), count);
-  EXPECT_GT(ends[ExcitationEnd::completed], trials(300) / 5) << "most of what is not broken should run its time";
+  EXPECT_GT(ends[ExcitationEnd::completed], trials(300) / 5)
+      << "most trials without a defect should run their full time";
   EXPECT_GT(ends[ExcitationEnd::travel] + ends[ExcitationEnd::speed], 0) << "or nothing was tested";
   RecordProperty("worst_share_of_stop", std::to_string(worst_share));
 }

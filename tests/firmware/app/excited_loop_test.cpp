@@ -107,7 +107,7 @@ TEST_F(ExcitedLoop, NobodyElseMovesTheAxisMeanwhile) {
   EXPECT_EQ(bench.ask(MessageType::save).status, Status::drive_enabled);
   bench.client = 2;
   EXPECT_EQ(bench.ask(MessageType::start_excitation, r).status, Status::others_motion);
-  EXPECT_EQ(bench.ask(MessageType::stop_excitation).status, Status::ok) << "everybody may stop";
+  EXPECT_EQ(bench.ask(MessageType::stop_excitation).status, Status::ok) << "every client may stop";
   bench.client = 1;
   for (int k = 0; k < 50; ++k) {
     bench.run(10);

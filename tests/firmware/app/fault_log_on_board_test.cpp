@@ -146,7 +146,7 @@ TYPED_TEST(FaultLogOnBoard, WaitsUntilEveryAxisIsOff) {
   ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{1, {}, 100.0F}).status, Status::ok);
   bench.run(150);
   const std::size_t operations = bench.board.parameter_flash().operations();
-  int waiting = 0;  // from the silent host's fault of x, which is off, to the end of the ramp of y
+  int waiting = 0;  // from the fault of x after the host fell silent, to the end of the ramp of y
   for (int k = 0; k < 2000 && bench.application.any_enabled(); ++k) {
     bench.run(1);
     if (bench.application.axes()[0].fault() == AxisFault::none) continue;

@@ -1,4 +1,5 @@
-// The fault log in flash: power cut at every operation, more faults than it keeps, time alone, damage, worn cells.
+// The fault log in flash: power cut at every operation, more faults than it keeps, entries without a fault, damage,
+// worn cells.
 #include "firmware/app/store/fault_log.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ firmware::FaultLog<Flash> log_at_start(Flash& flash) {
   return log;
 }
 
-/// Every entry from the newest down, no more and no fewer than there should be.
+/// Expects exactly these entries, beginning with the newest.
 template <typename Flash>
 void expect_faults_up_to(firmware::FaultLog<Flash>& log, std::uint32_t newest, const std::string& where = "") {
   ASSERT_EQ(log.size(), std::min<std::size_t>(newest, kLoggedFaults)) << where;
@@ -126,11 +127,11 @@ TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
       flash.cut_power_after(0, torn, seed + 1);
       try {
         log_at_start(flash);
-      } catch (const PowerCut&) {  // it had something to write
+      } catch (const PowerCut&) {  // power failed during a write
       }
       flash.restore_power();
       Log log = log_at_start(flash);
-      if (log.entry(0) == fault_number(done + 1)) ++done;  // the one that was being written
+      if (log.entry(0) == fault_number(done + 1)) ++done;  // the entry that was being written
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(log, done, where));
       Log again = log_at_start(flash);
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(again, done, where + ", second start-up"));
@@ -148,7 +149,7 @@ TEST(FaultLog, ADamagedEntryIsLeftOutAndNoOther) {
   for (std::uint32_t n = 1; n <= 5; ++n) ASSERT_TRUE(log.add(fault_number(n)));
   const std::size_t sector = flash.contents()[2][0] != std::byte{0xFF} ? 2 : 3;
   flash.contents()[sector][32 * 4 + 9] ^= std::byte{2};  // behind the head and the time: the third
-  EXPECT_EQ(log.entry(2), std::nullopt) << "it reads otherwise than it was written";
+  EXPECT_EQ(log.entry(2), std::nullopt) << "it reads back differently";
   Log again = log_at_start(flash);
   ASSERT_EQ(again.size(), 4u);
   EXPECT_EQ(again.entry(1), fault_number(4));

@@ -35,7 +35,7 @@ struct HomingBench {
   Status home(bool here) {
     return bench.ask(MessageType::home, firmware::HomeRequest{0, static_cast<std::uint8_t>(here ? 1 : 0)}).status;
   }
-  /// While the host is heard.
+  /// Runs while the host sends requests.
   void run(int periods) {
     for (int k = 0; k < periods; k += 50) {
       bench.run(50);
@@ -91,7 +91,7 @@ TYPED_TEST(HomingOfABoard, UnhomedAxesMoveByAWayButNotToAPlace) {
   ASSERT_EQ(this->bench.ask(MessageType::move, firmware::MoveRequest::by(0, 1000)).status, Status::ok);
   this->run(1000);
   EXPECT_NEAR(static_cast<double>(this->axis().counts()), 1000.0, 2.0);
-  EXPECT_EQ(this->home(false), Status::homing_mode) << "nothing to look for";
+  EXPECT_EQ(this->home(false), Status::homing_mode) << "this mode has no search";
   ASSERT_EQ(this->home(true), Status::ok);
   EXPECT_TRUE(this->is_homed());
   EXPECT_NEAR(static_cast<double>(this->axis().counts()) * firmware_test::kEncoderResolution_mm, 100.0, 0.01);
@@ -124,13 +124,13 @@ TYPED_TEST(HomingOfABoard, AnAxisThatCanFindHomeIsNotTold) {
 }
 
 TYPED_TEST(HomingOfABoard, ASwitchThatIsNeverFoundStopsTheAxis) {
-  this->start(1, -20.0);  // away from it
+  this->start(1, -20.0);  // away from the switch
   ASSERT_EQ(this->home(false), Status::ok);
   this->run(4000);
   EXPECT_EQ(this->fault(), AxisFault::homing_switch_not_found);
   EXPECT_FALSE(this->is_homed());
   EXPECT_FALSE(this->bench.board.axis(0).drive_enable().is_on());
-  EXPECT_GT(this->bench.board.plant(0).truth().x, -31.0) << "30 mm and a ramp";
+  EXPECT_GT(this->bench.board.plant(0).truth().x, -31.0) << "it stops after 30 mm and a ramp";
 }
 
 TYPED_TEST(HomingOfABoard, ASilentHostEndsIt) {

@@ -84,7 +84,7 @@ TEST_F(TwoClients, TakingOverIsSaidInSoManyWords) {
   look(kSecond, 1000);
   EXPECT_EQ(fault(), 0);
   look(kFirst, 1000);
-  EXPECT_EQ(fault(), kLost) << "who lost the motion no longer keeps it alive";
+  EXPECT_EQ(fault(), kLost) << "the former owner no longer keeps the motion alive";
 }
 
 TEST_F(TwoClients, AnAxisAtRestIsMovedByWhoeverAsks) {

@@ -14,7 +14,7 @@ namespace firmware_test {
 class Sparks {
  public:
   explicit Sparks(std::uint64_t seed) : random_(seed), until_(next()) {}
-  /// Once a control period.
+  /// Call it once per control period.
   bool read() {
     if (--until_ > 0) return false;
     if (until_ > 1 - length_) return true;

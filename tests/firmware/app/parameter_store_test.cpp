@@ -89,8 +89,8 @@ TEST(ParameterStore, SavesTwiceWithoutARestart) {
   EXPECT_EQ(load_at_start(flash).values, generation(2));
 }
 
-/// Cuts power at one operation of two consecutive saves; afterwards starts up, being cut once more at the first
-/// operation of that, then saves again.
+/// Cuts power at one operation of two consecutive saves. Then starts up, with another cut at the first operation, and
+/// saves again.
 void cut_once(const SimulatedFlash& before, std::size_t operation, TornState torn, const ParameterValues& old,
               StoreState old_state) {
   const std::string where =
@@ -108,7 +108,7 @@ void cut_once(const SimulatedFlash& before, std::size_t operation, TornState tor
   flash.cut_power_after(0, torn, seed + 1);
   try {
     load_at_start(flash);
-  } catch (const PowerCut&) {  // it had something to write
+  } catch (const PowerCut&) {  // power failed during a write
   }
   flash.restore_power();
   const StoredParameters found = load_at_start(flash);
@@ -116,7 +116,7 @@ void cut_once(const SimulatedFlash& before, std::size_t operation, TornState tor
   ASSERT_TRUE(is_old || found.values == sets[done + 1]) << where << ": neither the old set nor the new one";
   const bool was_empty = is_old && done == 0 && old_state == StoreState::empty;
   ASSERT_EQ(found.report.state, was_empty ? StoreState::empty : StoreState::loaded) << where;
-  ASSERT_EQ(load_at_start(flash).values, found.values) << where << ": another start-up, another set";
+  ASSERT_EQ(load_at_start(flash).values, found.values) << where << ": the next start-up finds another set";
   save(flash, generation(4));
   ASSERT_EQ(load_at_start(flash).values, generation(4)) << where;
 }

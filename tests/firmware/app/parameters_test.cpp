@@ -109,7 +109,7 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   const auto before_compensated = behaviour<TypeParam>(compensated);
   ASSERT_EQ(before_compensated.first, SetRefusal{});
   for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
-    if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
+    if (firmware::key_at(place).owner() > 1) continue;  // y has the same rows
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
     if (place == place_named("host.timeout") || place == place_named("host.standing_timeout") ||
         place == place_named("emergency_stop.delay") || place == place_named("probe.input"))
@@ -217,7 +217,7 @@ TYPED_TEST(Parameters, CompensationThatMakesNoSenseIsRefusedOnlyWhereItIsOn) {
   }
 }
 
-/// The core knows parameters by their ids alone.
+/// The core identifies parameters only by their ids.
 TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
   using firmware::Refusal;
   for (const auto& [refusal, name] : {std::pair{Refusal::sample_period, "drive.sample_period"},
@@ -287,7 +287,7 @@ TEST(ParameterTable, KeysAndPlacesAreOneToOne) {
   EXPECT_EQ(ParameterValues(1).place_of(ParameterKey::of_axis(1, 64)), std::nullopt) << "the board has one axis";
 }
 
-/// As released; a row may go, but its id never means anything else.
+/// Ids as released; a row may be removed, but its id is never reused.
 TEST(ParameterTable, IdsAreFrozen) {
   const std::pair<std::uint16_t, const char*> kReleased[] = {
       {1, "control.rate"},

@@ -84,7 +84,7 @@ class PathOnBoard : public testing::Test {
             static_cast<double>(reference.counts) + std::ldexp(static_cast<double>(reference.fraction), -48) - begin[i];
         seen[i] = at[i];
       }
-      // The reference of an axis that is off is where its encoder is.
+      // The reference of an axis that is off is at its encoder's position.
       if (bench.application.axes()[0].telemetry().enabled && bench.application.axes()[1].telemetry().enabled)
         off = std::max(off, circle.off(at[0], at[1]));
     }
@@ -191,7 +191,7 @@ TYPED_TEST(PathOnBoard, HoldsAndGoesOn) {
   EXPECT_LT(this->off, 1e-3);
 }
 
-/// A disable in the middle of a path stops on it, too; then the enable drops.
+/// A disable in the middle of a path also stops on the path; then the enable drops.
 TYPED_TEST(PathOnBoard, DisablesAtRestOnThePath) {
   ASSERT_EQ(this->open(), Status::ok);
   this->send(this->pieces());
@@ -215,7 +215,7 @@ TYPED_TEST(PathOnBoard, BelongsToItsOwner) {
   EXPECT_EQ(this->open(), Status::others_motion);
   EXPECT_EQ(this->bench.ask(MessageType::path_rate, firmware::PathRateRequest{1000, 1, 0}).status,
             Status::others_motion);
-  EXPECT_EQ(this->state().phase, static_cast<std::uint8_t>(PathPhase::running)) << "everybody may look";
+  EXPECT_EQ(this->state().phase, static_cast<std::uint8_t>(PathPhase::running)) << "every client may read";
   EXPECT_EQ(this->ask(MessageType::stop_path), Status::ok) << "and stop";
   this->bench.client = 1;
   this->keep_alive(300);

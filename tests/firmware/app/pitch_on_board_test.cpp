@@ -1,4 +1,5 @@
-// Tables of pitch errors on the simulated board: loaded, kept, refused, and their effect on an axis with a screw error.
+// Tables of pitch errors on the simulated board: loading, saving, refusal, and the effect on an axis with a screw
+// error.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -80,7 +81,7 @@ struct Machine {
     ASSERT_EQ(bench.application.axes()[axis].fault(), firmware::AxisFault::none) << x_mm;
   }
 
-  /// As with a laser interferometer: to each position from below, then to each from above.
+  /// Measures as with a laser interferometer: approaches each position from below, then each from above.
   struct Deviation {
     double x_mm, forward_mm, backward_mm;
   };
@@ -187,7 +188,7 @@ std::vector<PitchPoint> some_points(int count, int seed = 1) {
   return points;
 }
 
-/// Catches a wrong sign, the other column, and points that are off by one.
+/// Catches a wrong sign, swapped columns, and points that are off by one.
 TYPED_TEST(PitchOnBoard, BringsTheTableToItsPlace) {
   auto& machine = this->machine;
   machine.enable();
@@ -305,7 +306,7 @@ TYPED_TEST(PitchOnBoard, RefusesWhileADriveIsEnabled) {
   machine.enable();
   EXPECT_EQ(machine.finish(points, true), Status::drive_enabled);
   machine.disable();
-  EXPECT_TRUE(machine.read().empty()) << "nothing half taken";
+  EXPECT_TRUE(machine.read().empty()) << "nothing is taken in part";
   EXPECT_EQ(machine.finish(points, true), Status::ok);
 }
 

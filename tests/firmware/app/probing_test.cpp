@@ -48,7 +48,7 @@ class Probing : public testing::Test {
     }
   }
   std::int64_t counts(std::size_t axis) { return bench.application.axes()[axis].telemetry().encoder_counts; }
-  /// Reading of the axis's encoder there.
+  /// Reading of the axis's encoder at that position.
   std::int64_t counts_of(double travel_mm, std::size_t axis = 0) const {
     return static_cast<std::int64_t>(std::floor(travel_mm / firmware_test::kEncoderResolution_mm)) + origin[axis];
   }
@@ -133,8 +133,8 @@ class Probing : public testing::Test {
 
   firmware_test::BoardOnABench<Scalar> bench;
   std::array<std::int64_t, 2> origin{};
-  double watched_mm = 1e9;                         ///< where x passes it,
-  std::pair<std::int64_t, std::int64_t> y_then{};  ///< y is here in that control period
+  double watched_mm = 1e9;                         ///< position at which x passes the surface
+  std::pair<std::int64_t, std::int64_t> y_then{};  ///< range of y in that control period
   int since_heard = 0;
 };
 
@@ -243,7 +243,7 @@ TYPED_TEST(Probing, ASparkIsForgotten) {
   EXPECT_EQ(this->met_at(0), this->counts_of(20.0009));
 }
 
-/// There is no time left to filter the input.
+/// The path ends before the input has been filtered.
 TYPED_TEST(Probing, AContactInTheLastPeriodCounts) {
   this->fit(ProbeContact::closes);
   ASSERT_EQ(this->start(ProbeStop::contact, kWay_mm, 1000), Status::ok);
@@ -276,7 +276,7 @@ TYPED_TEST(Probing, AContactStopsAJog) {
   EXPECT_EQ(this->jog(60.0), Status::ok) << "faster on the way";
   EXPECT_EQ(this->jog(5.0, 1), Status::ok);
   while (this->travel_mm() < 25.0) this->run(1);
-  EXPECT_EQ(this->jog(60.0), Status::ok) << "it may be a spark";
+  EXPECT_EQ(this->jog(60.0), Status::ok) << "it may be a noise spike";
   this->run(10);
   ASSERT_FALSE(this->is_at_rest());
   EXPECT_EQ(this->jog(60.0), Status::wrong_state) << "it slows down";
@@ -285,7 +285,7 @@ TYPED_TEST(Probing, AContactStopsAJog) {
   EXPECT_TRUE(this->is_at_rest(1));
 }
 
-/// Away from the surface, and against it again.
+/// Moves away from the surface, and against it again.
 TYPED_TEST(Probing, AJogLeavesWhatTheProbeTouches) {
   this->bench.board.put_surfaces({{0, 10.0, true}});
   this->fit(ProbeContact::closes);

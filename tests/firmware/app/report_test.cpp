@@ -1,4 +1,4 @@
-// The envelope of reports, against bytes that were put together by hand (checksum: Python's zlib.crc32).
+// The envelope of reports, compared with bytes assembled by hand (checksum: Python's zlib.crc32).
 #include "firmware/app/protocol/report.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Every message, from the owner and from another client: which ones are refused, and that there are no others.
+// Every message, from the owner and from another client: exactly the expected ones are refused.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +16,7 @@ using firmware_test::set;
 using Bench = firmware_test::BoardOnABench<float>;
 
 constexpr std::uint16_t kOwner = 1, kStranger = 2;
-/// 600 ms at 50 mm/s in all, of x alone.
+/// Moves only x, for 600 ms in all, at 50 mm/s.
 constexpr firmware::PathUnits kUnits{8, 20, 26};
 
 /// Payload size, and the reply to another client while the owner's axis moves and the owner captures; from the
@@ -182,7 +182,7 @@ TEST_F(Requests, AStrangerMayLookStopAndDisableAndNothingElse) {
     EXPECT_TRUE(fresh.application.capture().is_running()) << type;
     if (expected.stranger == Status::ok) continue;
     fresh.client = kOwner;
-    EXPECT_EQ(fresh.ask(MessageType::jog, kJog).status, Status::ok) << "still its owner's after " << type;
+    EXPECT_EQ(fresh.ask(MessageType::jog, kJog).status, Status::ok) << "still owned by the first client after " << type;
   }
 }
 
@@ -217,7 +217,7 @@ TEST_F(Requests, APathIsStartedByWhoOpenedIt) {
   ASSERT_EQ(open(kOwner), Status::ok);
   ASSERT_EQ(load_path(kOwner), Status::ok);
   EXPECT_EQ(ask(kStranger, MessageType::start_path), Status::others_motion);
-  ask(kStranger, MessageType::enable, firmware::AxesRequest{1});  // of an axis that is on already
+  ask(kStranger, MessageType::enable, firmware::AxesRequest{1});  // the axis is already enabled
   EXPECT_EQ(ask(kStranger, MessageType::start_path), Status::others_motion);
   EXPECT_EQ(load_path(kStranger), Status::others_motion);
   EXPECT_EQ(ask(kStranger, MessageType::path_rate, firmware::PathRateRequest{}), Status::others_motion);
@@ -238,7 +238,7 @@ TEST_F(Requests, APathDoesNotOutliveItsEnables) {
   const std::int64_t before = counts();
   look(kOwner, 300);
   EXPECT_EQ(counts(), before);
-  EXPECT_EQ(ask(kOwner, MessageType::jog, kJog), Status::ok) << "nothing leads the axis any more";
+  EXPECT_EQ(ask(kOwner, MessageType::jog, kJog), Status::ok) << "the axis is no longer on a path";
 }
 
 /// An emergency stop drops the enable; nodes and entries that were loaded before are discarded.
@@ -293,7 +293,7 @@ TEST_F(Requests, ATriggeredCaptureIsItsClientsUntilThatOneLetsGo) {
   request.after = 100;
   ASSERT_EQ(ask(kOwner, MessageType::arm_trigger, request), Status::ok);
   look(kOwner, 3000);
-  EXPECT_EQ(ask(kStranger, MessageType::arm_trigger, request), Status::others_capture) << "complete, but not let go";
+  EXPECT_EQ(ask(kStranger, MessageType::arm_trigger, request), Status::others_capture) << "complete, but not released";
   request.after = 0;
   EXPECT_EQ(ask(kStranger, MessageType::arm_trigger, request), Status::others_capture);
   EXPECT_EQ(ask(kOwner, MessageType::arm_trigger, request), Status::ok);
@@ -303,8 +303,7 @@ TEST_F(Requests, ATriggeredCaptureIsItsClientsUntilThatOneLetsGo) {
   EXPECT_EQ(ask(kOwner, MessageType::arm_trigger, request), Status::ok) << "the other has died";
 }
 
-/// On a chip that may do anything while its supply fails, no drive is enabled, and requests that move an axis are
-/// refused.
+/// Without a brown-out reset no drive is enabled, and requests that move an axis are refused.
 TEST_F(Requests, NothingMovesWithoutBrownOutReset) {
   firmware::ProtocolServer<Bench::Application> server(bench.application, bench.image, {.lacks_brown_out_reset = true});
   for (const auto& [type, expected] : kMessages) {
@@ -321,7 +320,8 @@ TEST_F(Requests, NothingMovesWithoutBrownOutReset) {
   }
 }
 
-/// Without a design nothing else limits an experiment: whatever the request's box is, the board has its own.
+/// Without a design only the box limits an experiment, so the board has limits of its own, whatever the request's box
+/// is.
 TEST(UnfittedAxis, HasLimitsOfItsOwn) {
   Bench bench;
   bench.run(200);

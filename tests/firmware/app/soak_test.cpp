@@ -122,7 +122,7 @@ class Day {
   void wait(int periods) {
     for (int k = 0; k < periods; ++k) period();
   }
-  /// Until the axes rest, while the host is heard; false: too long, or a fault.
+  /// Runs until the axes rest, with a live host; false: it took too long, or a fault occurred.
   bool wait_for_rest() {
     for (int rounds = 0; rounds < 5000; ++rounds) {
       wait(1 + static_cast<int>(random_() % 180u));
@@ -204,7 +204,7 @@ class Day {
     }
   }
 
-  /// The axis at its target, and its counts unchanged relative to home.
+  /// Checks that the axis is at its target, and that its counts are unchanged relative to home.
   void expect_at(std::size_t i, std::int64_t target) {
     const auto& seen = application_.axes()[i].telemetry();
     ASSERT_EQ(seen.reference.counts, target);

@@ -12,7 +12,7 @@ using firmware::Status;
 using firmware::SupervisorState;
 using Bench = firmware_test::BoardOnABench<>;
 
-/// What a stop does, by control periods since the circuit opened.
+/// Control periods from the opening of the circuit to each action of the stop.
 struct StopEdges {
   int ramp_begins = 0, enable_off = 0, power_off = 0;
   double way_mm = 0.0;

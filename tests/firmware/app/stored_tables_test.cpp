@@ -125,7 +125,7 @@ TEST(StoredTables, APowerCutLeavesWhatWasThereOrWhatIsNew) {
         const StoredTables found = tables_at_start(flash);
         ASSERT_TRUE(story.is_after(found, step) || story.is_after(found, step + 1))
             << "step " << step << ", operation " << operation << ", torn " << static_cast<int>(torn);
-        // And it can be done again.
+        // The same operation can be repeated.
         Store store(flash);
         ParameterValues ignored;
         store.load(ignored);
@@ -168,7 +168,7 @@ TEST(StoredTables, NeedRoomAndTheRightPoints) {
   ParameterValues values = values_of(1);
   store.load(values);
   EXPECT_EQ(load(store, values, 0, points(100, 1)), SaveResult::flash_failed) << "2 kB";
-  EXPECT_EQ(flash.operations(), 0u) << "nothing is erased for it";
+  EXPECT_EQ(flash.operations(), 0u) << "nothing is erased";
   SimulatedFlash larger(2, 4096, 4);
   Store roomy(larger);
   roomy.load(values);

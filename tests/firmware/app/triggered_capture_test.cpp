@@ -51,7 +51,7 @@ class TriggeredCapture : public testing::Test {
                           all.begin() + static_cast<std::ptrdiff_t>((row + 1) * seen.half_words));
     return result;
   }
-  /// Runs and notes what the axis counted in every period.
+  /// Runs and records the axis's counts in every period.
   void run(int periods) {
     for (int k = 0; k < periods; ++k) {
       bench.run(1);
@@ -188,7 +188,7 @@ TEST(TriggeredMemory, OutlivesAResetIfItIsSoundAndTheTriggerHadCome) {
   EXPECT_EQ(seen.survived, 1);
   EXPECT_EQ(seen.trigger_row, 20u);
   EXPECT_GT(seen.rows, 20u);
-  EXPECT_LT(seen.rows, 30u) << "as far as it came";
+  EXPECT_LT(seen.rows, 30u) << "only the rows recorded so far";
   firmware::TriggeredPayload part;
   EXPECT_TRUE(after_reset.read(0, part));
   *copy = *memory;

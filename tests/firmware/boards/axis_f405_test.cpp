@@ -111,7 +111,7 @@ TEST_F(AxisBoard, StartsTheSameAfterABootRomAndAfterAnEarlierProgram) {
   start();
   run_ms(5.0);
   EXPECT_FALSE(enables_were_on);
-  new (&board) Board;  // as start-up makes its variables anew
+  new (&board) Board;  // as start-up initialises its variables again
   chip.interrupts.reset();
   ASSERT_NO_THROW(start());
   run_ms(5.0);
@@ -248,13 +248,13 @@ TEST_F(AxisBoard, AConverterThatLostItsRegistersIsFoundAndStartedAnewOnlyWhileTh
   run_ms(40.0);
   EXPECT_FALSE(board.axis(0).dac().is_healthy());
   EXPECT_FALSE(board.axis(1).dac().is_healthy());
-  EXPECT_FALSE(chip.converter.output_V(0)) << "nobody has powered it up";
+  EXPECT_FALSE(chip.converter.output_V(0)) << "it has not been powered up";
   run_ms(10.0, true);
   EXPECT_TRUE(board.axis(0).dac().is_healthy());
   EXPECT_EQ(chip.converter.output_V(0), 0.0);
 }
 
-/// Both oscillators at their quickest; a report of 2 KB takes the line 180 ms.
+/// Both oscillators at their fastest; a report of 2 KB occupies the line for 180 ms.
 TEST_F(AxisBoard, AReportKeepsTheBackgroundFromNothing) {
   chip.independent_watchdog.oscillator_Hz = 47e3;
   start();

@@ -125,7 +125,7 @@ class ShippedProgram : public testing::Test {
     EXPECT_EQ(application.active().get<"control.rate">(), stored_rate_Hz) << "parameters come out of the store first";
   }
 
-  /// From reset on, until so long after the background's first round.
+  /// Runs from reset until this time after the background's first round.
   void run_ms(
       double time_ms, const std::function<void()>& each_round = [] {}) {
     constexpr double kRound_ms = 0.1;
@@ -142,7 +142,7 @@ class ShippedProgram : public testing::Test {
     }
   }
 
-  /// A reset, for which the chip's flags say why, and start-up, which makes the program's variables anew.
+  /// A reset, whose cause is in the chip's flags, and start-up, which initialises the program's variables again.
   void reset(std::uint32_t flags) {
     chip.clock.set_reset_flags(flags);
     chip.independent_watchdog.reset();
@@ -155,7 +155,7 @@ class ShippedProgram : public testing::Test {
     firmware::boards::control_cycles = {};
   }
 
-  /// It has no rounds then: a part ends the run, with time enough for the report.
+  /// The background then has no rounds, so a part ends the run, late enough for the report.
   void expect_that_it_stays_safe(double until_ms) {
     struct End : parts::PlainRegisters {
       explicit End(double until_ms) : PlainRegisters(4), until_ns(1e6 * until_ms) {}
@@ -181,7 +181,7 @@ class ShippedProgram : public testing::Test {
     seen.to_board.push_back(firmware::encode(request));
   }
 
-  /// By the program's own protocol and flash; it starts anew.
+  /// Uses the program's own protocol and flash, and starts the program again.
   void store_rate(float rate_Hz) {
     firmware::ParameterValues values(hal::kAxisCount);
     const std::size_t place = firmware_test::place_named("control.rate");
@@ -208,7 +208,7 @@ class ShippedProgram : public testing::Test {
   float stored_rate_Hz = 1000.0F;
 };
 
-/// The first start erases what the fault log needs, which takes longer than any watchdog waits.
+/// The first start erases the sectors of the fault log, which takes longer than the time-out of any watchdog.
 TEST_F(ShippedProgram, StartsSafelyAndKeepsItsWatchdogsAndItsChargePumpAlive) {
   chip.independent_watchdog.oscillator_Hz = 47e3;
   run_ms(300.0);

@@ -23,11 +23,11 @@ class DmaPart : public Part {
   void request_word(unsigned stream, unsigned channel);
   /// A bus error during a transfer ends the stream (10.3.18).
   void fail(unsigned stream) { streams_[stream].control &= ~1u; }
-  /// Addresses have 32 bits on the chip: a buffer of the test is known by the lower ones of its own.
+  /// Addresses have 32 bits on the chip, so a buffer of the test is identified by the lower 32 bits of its address.
   void knows(volatile std::uint16_t* memory, std::size_t count) { memory_ = memory, count_ = count; }
 
   bool is_stalled = false;                    ///< the bus is taken by others for too long
-  std::function<void(unsigned)> on_complete;  ///< with the stream's number, where its interrupt is enabled
+  std::function<void(unsigned)> on_complete;  ///< called with the stream's number, if its interrupt is enabled
 
  private:
   struct Stream;

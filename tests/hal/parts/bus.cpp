@@ -56,7 +56,7 @@ const Bus::Place& Bus::at(std::uintptr_t address) const {
 
 void Bus::pass_ns(double time_ns) {
   now_ns_ += time_ns;
-  if (passing_ > 0) return;  // a part waits for itself
+  if (passing_ > 0) return;  // a part must not wait for itself
   ++passing_;
   for (const Place& place : places_)
     if (!place.is_clocked || place.is_clocked()) place.part->run(now_ns_);
@@ -66,7 +66,7 @@ void Bus::pass_ns(double time_ns) {
 
 void Bus::interrupt(unsigned number, const std::function<void()>& handler) { pending_[number] = handler; }
 
-/// What waited comes with the next access: guards end in destructors, out of which no ChipReset may come.
+/// Pending interrupts run at the next access: guards end in destructors, which must not throw ChipReset.
 void Bus::shut_out(bool begins) { shut_out_ += begins ? 1 : -1; }
 
 void Bus::take_interrupts() {

@@ -11,7 +11,7 @@
 
 namespace parts {
 
-/// Thrown out of the access that was the processor's last.
+/// Thrown by the processor's last access.
 struct ChipReset : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -28,11 +28,11 @@ class Part {
   virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
   /// Advances the part's own time until now.
   virtual void run(double /*now_ns*/) {}
-  /// As after a reset of the chip, or by the part's bit in the reset registers.
+  /// Resets the part, as a reset of the chip or the part's bit in the reset registers does.
   virtual void reset() = 0;
 };
 
-/// One at a time; the newest answers.
+/// Only the newest bus answers accesses.
 class Bus {
  public:
   Bus();
@@ -41,7 +41,8 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   static Bus& current();
 
-  /// While `is_clocked` says no, reads give 0 and writes are lost (RM0090, 7.3.10), and the part's time stands still.
+  /// While `is_clocked` returns false, reads give 0 and writes are lost (RM0090, 7.3.10), and the part's time stands
+  /// still.
   void attach(std::uintptr_t base, std::uint32_t size, Part& part, std::function<bool()> is_clocked = {});
 
   std::uint32_t read(std::uintptr_t address, std::size_t size);
@@ -55,15 +56,15 @@ class Bus {
   void pass_ns(double time_ns);
   void pass_ms(double time_ms) { pass_ns(1e6 * time_ms); }
 
-  /// The processor does this as soon as it may: between two accesses, not within another interrupt, not while shut out.
-  /// An interrupt that is pending already comes once.
+  /// The processor runs this as soon as possible: between two accesses, not within another interrupt, not while
+  /// interrupts are disabled. An interrupt that is already pending runs once.
   void interrupt(unsigned number, const std::function<void()>& handler);
   void shut_out(bool begins);
 
   /// Time that an access takes: four processor clocks, load or store and the bridge to a peripheral bus.
   void set_processor_clock(double clock_Hz) { access_ns_ = 4e9 / clock_Hz; }
 
-  /// Reports an access that no manual allows. Tests check at their end that there was none.
+  /// Reports an access that the manuals do not allow. Tests check at their end that there was no such access.
   void complain(const std::string& what);
   const std::vector<std::string>& complaints() const { return complaints_; }
   /// Returns and clears the complaints so far.

@@ -86,7 +86,7 @@ void Chip::probe(bool closed, double lasts_ns) {
   timer4.line_edge(!closed, lasts_ns);
 }
 
-/// ARMv7-M ARM, B3.4.4: ISER; what is not enabled stays pending.
+/// ARMv7-M ARM, B3.4.4: ISER; an interrupt that is not enabled stays pending.
 void Chip::interrupt(unsigned number) {
   const std::uint32_t enabled = interrupts.read(0xF0 + number / 32 * 4);
   if (bits(enabled, number % 32) == 0) return;

@@ -72,7 +72,7 @@ double ClockPart::ahb_Hz() const {
 }
 double ClockPart::apb1_Hz() const { return ahb_Hz() / bus_divider(bits(configuration_, 10, 3)); }
 double ClockPart::apb2_Hz() const { return ahb_Hz() / bus_divider(bits(configuration_, 13, 3)); }
-/// 7.2: as the bus where it is not divided, twice it otherwise.
+/// 7.2: the bus clock if it is not divided, otherwise twice the bus clock.
 double ClockPart::apb1_timers_Hz() const {
   return apb1_Hz() * (bus_divider(bits(configuration_, 10, 3)) == 1 ? 1.0 : 2.0);
 }
@@ -126,7 +126,7 @@ void ClockPart::write_control(std::uint32_t value) {
       bus_.complain("clock: the PLL is outside its range");  // 7.3.2; datasheet, table 36
     if (bits(pll_, 22) != 0 && (control_ & kHseReady) == 0) bus_.complain("clock: the PLL has no input yet");
   }
-  // 7.3.1: what drives the system cannot be switched off.
+  // 7.3.1: the oscillator that drives the system cannot be switched off.
   if (source == kHsi) value |= kHsiOn;
   if (crystal_is_used) value |= kHseOn;
   if (source == kPll) value |= kPllOn;

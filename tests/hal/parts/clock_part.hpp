@@ -50,7 +50,7 @@ class ClockPart : public Part {
   /// As the ROM's USB loader leaves it when it starts the program (AN2606: crystal, PLL, 60 MHz; AN3156: no reset in
   /// between), flash with wait states for it, and its peripherals clocked.
   void leave_as_boot_rom();
-  /// The flags that tell why the chip was reset (7.3.21).
+  /// The flags that give the cause of the reset (7.3.21).
   void set_reset_flags(std::uint32_t flags) { status_ = (status_ & 0xFFFFFF) | flags; }
 
  private:

@@ -51,7 +51,7 @@ std::optional<double> ConverterPart::output_V(unsigned channel) const {
 
 void ConverterPart::clear_line(bool level) {
   cleared_ = !level;
-  if (cleared_) code_ = {};  // CLR select 0: 0 V, and the registers with it
+  if (cleared_) code_ = {};  // CLR select 0: 0 V, and the registers are cleared too
 }
 
 void ConverterPart::select_line(bool level) {
@@ -130,7 +130,7 @@ void ConverterPart::take(std::uint32_t word) {
   const std::uint32_t data = word & 0xFFFF, address = bits(word, 16, 3);
   if (bits(word, 22) != 0) return;  // table 15: must be 0
   answer_is_reading_ = false;
-  answer_ = word;  // daisy chain: what came in leaves with the next frame
+  answer_ = word;  // daisy chain: the received word is sent with the next frame
   if (bits(word, 23) != 0) {
     answer_ = (word & 0xFF0000) | read_back(word);
     reading_ = answer_is_reading_ = true;

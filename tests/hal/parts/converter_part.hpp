@@ -19,15 +19,15 @@ class ConverterPart : public SerialSlave {
   void select_line(bool level);
   void clear_line(bool level);  ///< CLR, active low
 
-  /// Volts at the terminal of channel 0 (A) or 1 (B); nothing while the channel is without power.
+  /// Volts at the terminal of channel 0 (A) or 1 (B); empty while the channel is not powered.
   std::optional<double> output_V(unsigned channel) const;
 
-  void power_up();                                                ///< and what a brown-out of its supply leaves
+  void power_up();                                                ///< also the state after a brown-out of its supply
   void heat();                                                    ///< above 150 degrees (thermal shutdown)
   void cool() { hot_ = false; }                                   ///< the alert stays until it is read
-  void short_out(unsigned channel);                               ///< more than 20 mA asked of an output
+  void short_out(unsigned channel);                               ///< an output must supply more than 20 mA
   bool answers = true;                                            ///< false: absent, its line back stays low
-  void deaf_for_answers(int frames) { silent_frames_ = frames; }  ///< so many answers to readings are disturbed
+  void deaf_for_answers(int frames) { silent_frames_ = frames; }  ///< this many answers to readings are disturbed
 
  private:
   void take(std::uint32_t word);

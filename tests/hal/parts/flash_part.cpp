@@ -41,7 +41,7 @@ std::uint32_t FlashPart::read(std::uint32_t offset) {
     case 0x00:
       return access_;
     case 0x0C:
-      // The program itself lies in flash: only what the instruction cache holds runs on, at times (3.5.2).
+      // The program itself lies in flash: at most the code in the instruction cache keeps running (3.5.2).
       if (is_busy()) bus_.pass_ns(10'000);
       return status_ | (is_busy() ? 1u << 16 : 0u);
     case 0x10:

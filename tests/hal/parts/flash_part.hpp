@@ -18,7 +18,7 @@ class FlashPart : public Part {
   void run(double now_ns) override;
   void reset() override;
 
-  /// As the processor reads it; the next one follows.
+  /// The sector as the processor reads it; the next sector follows.
   std::byte* sector(unsigned number) { return cells_.data() + begin_of(number); }
   unsigned wait_states() const { return access_ & 7u; }
   bool cache_is_stale() const { return cache_is_stale_; }

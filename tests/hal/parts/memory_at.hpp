@@ -1,4 +1,4 @@
-// Memory at an address of the chip: what programs read there without a register.
+// Memory at an address of the chip, which programs read directly and not through a register.
 #pragma once
 
 #include <sys/mman.h>
@@ -10,7 +10,7 @@
 
 namespace parts {
 
-/// Zeros at first. Begins and ends with a page; nothing of the test's own may lie there.
+/// Initially zero. Begins and ends at a page boundary; the test itself must not use these addresses.
 class MemoryAt {
  public:
   MemoryAt(std::uintptr_t address, std::size_t size)

@@ -8,10 +8,10 @@
 
 namespace parts {
 
-/// What a pin's surroundings put on it.
+/// Level that the connected parts put on a pin.
 enum class Outside { open, low, high };
 
-/// What a pin puts on its surroundings.
+/// Level that a pin puts on the connected parts.
 enum class Drive { floating, pulled_up, pulled_down, low, high };
 
 class PortPart : public Part {
@@ -25,7 +25,7 @@ class PortPart : public Part {
 
   void put(unsigned pin, Outside level) { outside_[pin] = level; }
   Drive drive(unsigned pin) const;
-  /// Level that a part on this pin sees; a floating pin counts as low and is complained of by inputs only.
+  /// Level that a part on this pin sees; a floating pin counts as low, and only inputs report it.
   bool level(unsigned pin) const;
   /// The alternate function (0 to 15) that the pin carries, -1 if it carries none.
   int function(unsigned pin) const;

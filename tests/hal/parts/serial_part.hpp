@@ -10,7 +10,7 @@ namespace parts {
 
 class SerialPart : public Part {
  public:
-  /// `baud`: of whoever is at the other end.
+  /// `baud`: rate of the other end.
   SerialPart(Bus& bus, std::function<double()> clock_Hz, double baud)
       : bus_(bus), clock_Hz_(std::move(clock_Hz)), baud_(baud) {}
 
@@ -21,7 +21,7 @@ class SerialPart : public Part {
 
   /// The other end sends a character, which has just arrived whole.
   void type(char character);
-  /// What the other end has received; '?' where the rates differ by more than 2 %.
+  /// Characters that the other end has received; '?' if the rates differ by more than 2 %.
   const std::string& sent() const { return sent_; }
   bool is_idle() const { return !shifts_ && !waits_; }
 

@@ -7,13 +7,13 @@
 
 namespace parts {
 
-/// What hangs on the three lines. Times are those of the edges.
+/// The part on the three lines. Times are those of the edges.
 class SerialSlave {
  public:
   virtual ~SerialSlave() = default;
   virtual void data_line(bool level, double at_ns) = 0;
   virtual void clock_line(bool level, double at_ns) = 0;
-  /// The line back, as it is at that instant.
+  /// Level of the line back to the master at that instant.
   virtual bool answer_line(double at_ns) = 0;
 };
 

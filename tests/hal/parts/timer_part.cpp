@@ -149,7 +149,7 @@ double TimerPart::to_next_compare() const {
   return nearest;
 }
 
-/// 18.3.8: the counter has come to a channel's value; 18.4.4: CCxDE requests DMA.
+/// 18.3.8: the counter has reached a channel's value; 18.4.4: CCxDE requests DMA.
 void TimerPart::compare() {
   for (unsigned channel = 0; channel < 4; ++channel) {
     if (!is_output(channel) || capture_[channel] != counter_) continue;
@@ -158,7 +158,7 @@ void TimerPart::compare() {
   }
 }
 
-/// Table of 18.4.7: the filter wants N equal samples at the clock or at a part of it (CKD 0).
+/// Table of 18.4.7: the filter requires N equal samples at the clock or at a part of it (CKD 0).
 double TimerPart::filter_ns(unsigned channel) const {
   const std::uint32_t field = bits(mode_[channel / 2], channel % 2 * 8 + 4, 4);
   constexpr double kSamples[16] = {0, 2, 4, 8, 6, 8, 6, 8, 6, 8, 5, 6, 8, 5, 6, 8};
@@ -175,7 +175,7 @@ void TimerPart::count(bool up) {
     counter_ = counter_ == 0 ? reload_ : counter_ - 1;
 }
 
-/// 18.3.12, table 97: SMS 1 counts the edges of TI2, 2 those of TI1, 3 both; CCxP turns an input round.
+/// 18.3.12, table 97: SMS 1 counts the edges of TI2, 2 those of TI1, 3 both; CCxP inverts an input.
 void TimerPart::edge(unsigned channel, bool rises, bool other_level) {
   const std::uint32_t encoder = bits(slave_, 0, 3);
   if (bits(control_, 0) == 0 || !is_input(0) || !is_input(1)) return;
@@ -206,7 +206,7 @@ void TimerPart::index() {
   capture(2);
 }
 
-/// 18.3.5: a second capture before the first was read is told, and holds.
+/// 18.3.5: a second capture before the first was read sets a flag and replaces the first.
 void TimerPart::capture(unsigned channel) {
   if (bits(status_, channel + 1) != 0) status_ |= 1u << (channel + 9);
   status_ |= 1u << (channel + 1);

@@ -18,9 +18,9 @@ class TimerPart : public Part {
   void reset() override;
 
   // The encoder's side.
-  /// Turns it by so many edges; more than zero: A leads B.
+  /// Turns the encoder by this many edges; positive: A leads B.
   void turn(int edges);
-  /// The index pulse, at the count that the encoder has now.
+  /// The index pulse, at the encoder's present count.
   void index();
   /// Noise on the index line: a spike of this length.
   void index_spike(double length_ns);

@@ -80,7 +80,7 @@ void WindowWatchdogPart::write(std::uint32_t offset, std::uint32_t value) {
 
 void WindowWatchdogPart::run(double now_ns) {
   const double tick_ns = 1e9 * 4096 * (1u << bits(configuration_, 7, 2)) / clock_Hz_();  // 22.4
-  if (is_clocked_()) phase_ns_ += now_ns - ran_until_ns_;  // 7.3.13: its clock can be taken away
+  if (is_clocked_()) phase_ns_ += now_ns - ran_until_ns_;  // 7.3.13: its clock can be switched off
   ran_until_ns_ = now_ns;
   while (phase_ns_ >= tick_ns) {
     phase_ns_ -= tick_ns;

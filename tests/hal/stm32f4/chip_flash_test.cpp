@@ -69,7 +69,7 @@ TEST_F(Flash, ProtectedSectorsAreAHardwareError) {
   EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an error of before does not count";
 }
 
-/// Each sector of the chip has its number at its beginning and its end: what is erased is these and no others.
+/// Each sector of the chip has its number at its beginning and its end, so the test sees which sectors are erased.
 TEST_F(Flash, ImagesHaveTheSectorsBetweenBootCodeAndParameters) {
   hal::stm32f4::ImageFlash images{flash_interface(), chip.flash.sector(1)};
   const auto mark_all = [&] {

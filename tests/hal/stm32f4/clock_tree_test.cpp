@@ -35,7 +35,7 @@ TEST_F(ClockTree, ComesToTheSameFromItsOwnStateToo) {
   EXPECT_EQ(chip.clock.system_Hz(), 168e6);
 }
 
-/// What a loader's USB controller or timer would go on doing.
+/// A loader's USB controller or timer must not continue to run.
 TEST_F(ClockTree, ResetsWhatAnEarlierProgramLeftOn) {
   chip.clock.leave_as_boot_rom();
   chip.usb.write(0x38, 1u << 16);  // GCCFG.PWRDWN: its transceiver

@@ -19,9 +19,9 @@ class Converter : public driver_test::OnRunningChip {
     chip.converter.clear_line(true);
     port.start();
   }
-  /// Volts of the channel that the code asks for.
+  /// Output voltage that corresponds to the code.
   static double volts(int code) { return code * 20.0 / 65536.0; }
-  /// As many looks as see every register.
+  /// Reads back every register once.
   void watch_all() {
     for (int look = 0; look < 6; ++look) converter.watch();
   }

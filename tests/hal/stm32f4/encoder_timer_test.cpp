@@ -21,7 +21,7 @@ class Encoder : public driver_test::OnRunningChip {
     encoder.start();
     control.start(84'000'000, 1000);
   }
-  /// In the next control period.
+  /// The reading in the next control period.
   hal::EncoderReading read() {
     chip.pass_ms(1.0);
     return encoder.read();
@@ -79,7 +79,7 @@ TEST_F(Encoder, TellsTheIndexOnceAndWhetherOneWasMissed) {
   EXPECT_FALSE(encoder.read_index().missed) << "and that is told once too";
 }
 
-/// 8 samples at 84 MHz: what is shorter than 95 ns is noise.
+/// 8 samples at 84 MHz: pulses shorter than 95 ns are noise.
 TEST_F(Encoder, NoiseOnTheIndexLineIsNoIndex) {
   chip.timer2.index_spike(80.0);
   EXPECT_FALSE(encoder.read_index().seen);

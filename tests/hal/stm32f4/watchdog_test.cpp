@@ -20,7 +20,8 @@ TEST_F(IndependentWatchdog, BitesAfterItsTimeAndNotBefore) {
   EXPECT_THROW(chip.pass_ms(2.0), ChipReset);
 }
 
-/// Datasheet, table 35: the oscillator runs at 17 to 47 kHz. No caller may take longer than the fastest one allows.
+/// Datasheet, table 35: the oscillator runs at 17 to 47 kHz. No caller may take longer than the fastest oscillator
+/// allows.
 TEST_F(IndependentWatchdog, BitesBetween34And95MillisecondsOverTheOscillatorsTolerance) {
   hal::stm32f4::Watchdog watchdog(independent_watchdog());
   chip.independent_watchdog.oscillator_Hz = 47e3;
@@ -100,7 +101,7 @@ TEST_F(WindowWatchdog, EndsAProgramWhoseControlInterruptComesHalfAsOften) {
   EXPECT_THROW(run_slowly(), ChipReset);
 }
 
-/// As the board does around the erase of a sector.
+/// Extends the time-out as the board does for the erase of a sector.
 TEST_F(WindowWatchdog, StandsStillWithoutItsClock) {
   watchdog.start();
   run_at(1000, 100.0);

@@ -12,7 +12,7 @@ namespace usb_test {
 
 namespace {
 
-/// What TinyUSB has asked of one direction of one endpoint.
+/// Transfer that TinyUSB has requested for one direction of one endpoint.
 struct Endpoint {
   bool open = false, armed = false, stalled = false;
   std::uint8_t* buffer = nullptr;

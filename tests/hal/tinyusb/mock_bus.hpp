@@ -38,10 +38,10 @@ class MockBus {
   Transfer in(std::uint8_t endpoint);
   Outcome out(std::uint8_t endpoint, const Bytes& data);
 
-  /// What a computer does with a device that it has found; true if every step was answered.
+  /// Enumerates the device as a computer does; true if every step was answered.
   bool enumerate(std::uint8_t address);
 
-  /// The device pulls D+ up.
+  /// Whether the device pulls D+ up.
   static bool sees_device();
 
   /// The address that the device has been given; 0 after a reset.

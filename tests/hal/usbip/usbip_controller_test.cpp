@@ -1,5 +1,5 @@
-// The USB/IP controller against the other end of its socket: what the kernel's vhci-hcd sends and must get back, byte
-// by byte after the kernel's Documentation/usb/usbip_protocol.rst.
+// The USB/IP controller against the other end of its socket: the bytes that the kernel's vhci-hcd sends and must
+// receive, from the kernel's Documentation/usb/usbip_protocol.rst.
 #include "hal/usbip/usbip_controller.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ class UsbipSocket : public testing::Test {
     return bytes;
   }
 
-  /// The reply that waits, if any; `in` says whether data follow it.
+  /// The pending reply, if any; `in`: whether data follow it.
   std::optional<Reply> reply(bool in) const {
     pollfd waiting{host, POLLIN, 0};
     if (poll(&waiting, 1, 0) != 1) return std::nullopt;

@@ -13,7 +13,7 @@ struct InstructionCost {
   bool operator==(const InstructionCost&) const = default;
 };
 
-/// What the cost image `name` reports, by the name of the part. Throws with the emulator's output if it fails.
+/// Results of the cost image `name`, by the name of the part. Throws with the emulator's output if it fails.
 std::map<std::string, InstructionCost> count_instructions(const std::string& name);
 
 }  // namespace target_test

@@ -34,7 +34,7 @@ constexpr std::uint16_t bit(Channel channel) {
   return static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
 }
 
-/// The encoder is a counter of periods, so that a row tells when it was taken.
+/// The encoder counts periods, so that a row shows when it was taken.
 std::uint32_t rows_out_of_step(const firmware::TriggerStatePayload& state) {
   std::uint32_t wrong = 0;
   firmware::TriggeredPayload part;

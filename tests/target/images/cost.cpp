@@ -87,7 +87,7 @@ void count_estimator_and_feedback() {
   return filters.next(value);
 }
 
-/// Notch and low-pass, which a step calls where they are on.
+/// Notch and low-pass, which a step calls if they are on.
 void count_filters() {
   firmware::ControlFilters<Scalar> filters;
   const firmware::BiquadParameters<Scalar> notch{
@@ -150,7 +150,7 @@ firmware::ExcitationRun<Scalar> excitation;
 firmware::TriggeredMemory memory;
 firmware::TriggeredCapture capture;
 
-/// As many lines as there may be, at the controller's output, and a ride beneath them.
+/// The largest number of lines at the controller's output, on top of a jog.
 void start_multisine() {
   plan.kind = firmware::ExcitationKind::multisine;
   plan.input = firmware::ExcitationInput::output;
@@ -248,7 +248,7 @@ void count_path(const char* name, unsigned mask, Step step) {
   std::int32_t piece = 0, speed = 0;
   for (int period = 0; period < 3000; ++period) {
     while (path.room() > 0) {
-      // A triangle of speeds: constant acceleration but for its corners, of which the nodes know nothing.
+      // A triangle of speeds: constant acceleration except at its corners, which the nodes do not represent.
       const std::int32_t phase = (piece + kPeriod / 4) % kPeriod;
       const std::int32_t next =
           (phase < kPeriod / 2 ? phase - kPeriod / 4 : 3 * kPeriod / 4 - phase) * kSpeed * 4 / kPeriod;

@@ -1,4 +1,4 @@
-// Image that counts what others' ways of writing the estimator cost: Eigen, and general matrix functions.
+// Image that counts the instructions of other implementations of the estimator: Eigen, and general matrix functions.
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>

@@ -19,7 +19,7 @@ inline void start_counting() {
   timer.CR1 = hal::stm32f4::Timer::kEnable;
 }
 
-/// Instructions that `work` executes, without those of counting.
+/// Instructions that `work` executes, without those for counting.
 template <typename Work>
 [[gnu::noinline]] std::uint32_t count(Work&& work) {
   const std::uint32_t before = instructions();

@@ -1,5 +1,5 @@
 // Processor in the loop on QEMU's netduinoplus2, which has the chip's core, FPU, interrupts, SysTick and USART1: the
-// axes take readings from files or from the serial port, as `arg=` of -semihosting-config says, and give back their
+// axes take readings from files or from the serial port, as `arg=` of -semihosting-config selects, and return their
 // words.
 #include <atomic>
 #include <cstring>
@@ -55,7 +55,8 @@ void start_control_interrupt(std::uint32_t clocks) {
 constexpr std::uint32_t kClock_Hz = 168'000'000;
 constexpr std::uint32_t kControlRate_Hz = 1000;
 
-/// The control interrupt reads and writes the two FIFOs; the emulated processor waits in them, its time stands still.
+/// The control interrupt reads and writes the two FIFOs. While the emulated processor waits for them, its time stands
+/// still.
 void run_over_files() {
   constexpr const char* kRequests = "pil-requests";
   constexpr const char* kReplies = "pil-replies";

@@ -1,4 +1,4 @@
-// What the axes of an image drive: the paper's drives without friction.
+// The drives of an image's axes: the paper's drives without friction.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace target_image {
 
-/// -128 to 127. Minimal standard generator's low-cost cousin: quality is of no matter here.
+/// -128 to 127, from a simple linear congruential generator: its quality does not matter here.
 inline std::int32_t random_code() {
   static std::uint32_t state = 1;
   state = state * 1664525u + 1013904223u;
   return static_cast<std::int32_t>(state >> 24) - 128;
 }
 
-/// Eq. (7) without friction, in float whatever the scalar of the control law is.
+/// Eq. (7) without friction, in float for any scalar of the control law.
 class RigidDrive {
  public:
   explicit RigidDrive(const firmware_test::PaperAxis& axis) : axis_(axis) {}

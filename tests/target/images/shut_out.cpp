@@ -32,7 +32,7 @@ class CountedBoard {
   static constexpr std::size_t kAxes = hal::kAxisCount;
   using AxisType = ValueAxis;
 
-  /// Notes what is executed while the outermost one lives.
+  /// Records the instructions that are executed while the outermost object exists.
   class ControlShutOut {
    public:
     ControlShutOut() {
@@ -108,7 +108,7 @@ void expect(bool holds, int exit_code) {
   if (!holds) hal::qemu::exit_emulator(exit_code);
 }
 
-/// What `request` shuts out at the worst; the axes run on before and after it.
+/// Longest time for which `request` disables the control interrupt; the axes keep running before and after it.
 template <typename Request>
 void report_shut_out(const char* name, Request request) {
   Cost cost;
@@ -123,7 +123,7 @@ void report_shut_out(const char* name, Request request) {
   report(name, cost);
 }
 
-/// As many points as there may be, of each axis; no drive is enabled.
+/// The largest number of points, for each axis; no drive is enabled.
 void load_tables() {
   for (std::uint16_t axis = 0; axis < CountedBoard::kAxes; ++axis) {
     auto& store = application.store();
@@ -164,7 +164,7 @@ extern "C" [[noreturn]] void run_board() {
   expect(application.commit(refused) == Status::ok, 1);
   load_tables();
   application.staged() = application.active();
-  // All that takes long switched on: friction's curves, filters, cogging, pitch. Then other values of it.
+  // Everything that takes long is switched on: friction curves, filters, cogging, pitch. Then its values change.
   for (const float more : {0.0F, 1.0F, 2.0F}) {
     if (more > 0.0F) application.staged() = application.active();
     for (const char* axis : {"x", "y"}) {

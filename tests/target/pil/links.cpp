@@ -45,8 +45,8 @@ std::unique_ptr<Stream> connect_to(const std::string& path) {
   throw std::runtime_error("the emulator does not open its serial port");
 }
 
-/// Emulated time runs by instructions, 64 ns each: the pauses between two control interrupts then cost little, and no
-/// result depends on how fast this computer is.
+/// Emulated time advances by 64 ns per instruction. The pauses between two control interrupts then take little time,
+/// and no result depends on the speed of this computer.
 std::vector<std::string> emulator_options(const std::string& mode) {
   return {"-icount", "shift=6,align=off,sleep=off", "-semihosting-config", "enable=on,target=native,arg=" + mode};
 }

@@ -12,7 +12,7 @@
 
 namespace target_test {
 
-/// A descriptor that closes itself. Reads and writes are whole or throw; reads wait 30 s at most.
+/// A descriptor that closes itself. Reads and writes are complete or throw; reads wait at most 30 s.
 class Stream {
  public:
   explicit Stream(int descriptor) : descriptor_(descriptor) {}

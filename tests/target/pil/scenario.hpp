@@ -1,5 +1,4 @@
-// The motion of a processor-in-the-loop run: the paper's two drives, simulated on this computer, and what they are
-// told.
+// The motion of a processor-in-the-loop run: the paper's two drives, simulated on this computer, and their commands.
 #pragma once
 
 #include <array>
@@ -86,7 +85,7 @@ struct Order {
   double argument;  ///< jog: mm/s; move: encoder counts
 };
 
-/// Lines as they are from one period on, in the bits of PilAxisRequest::lines and PilRequest::board.
+/// State of the lines from one period on, in the bits of PilAxisRequest::lines and PilRequest::board.
 struct LineEvent {
   std::uint32_t period;
   std::array<std::uint32_t, 2> axis_lines;
@@ -103,8 +102,8 @@ struct Story {
 /// Moves long and short, cut moves, jogs up to the velocity limit, reversals, disabling in motion: 10 s on both axes.
 const Story& motion_story();
 
-/// What goes wrong: limit switch, late control, drive fault, emergency stop, low supply, amplifier not ready; cleared
-/// and enabled again.
+/// Faults: limit switch, late control, drive fault, emergency stop, low supply, amplifier not ready; cleared and
+/// enabled again.
 const Story& fault_story();
 
 /// Two simulated drives behind the simulated board's connectors.
@@ -147,7 +146,7 @@ void add_orders(const Story& story, firmware::boards::PilRequest& request) {
 
 using Replies = std::vector<firmware::boards::PilReply>;
 
-/// Closes the loop for as many periods: `exchange` stands for the board.
+/// Closes the loop for this many periods: `exchange` replaces the board.
 template <typename Scalar, typename Exchange>
 Replies run(std::uint32_t periods, Exchange&& exchange, const Story& story = motion_story()) {
   Plants plants;

@@ -112,7 +112,7 @@ TEST_F(ImageUpdate, AnImageThatNobodyConfirmsIsLeftForTheOldOne) {
 TEST_F(ImageUpdate, WhatAProbeFlashedRunsWhateverTheSlotsHold) {
   write(kProgram, kOld);
   install(kNew);
-  for (const Bytes& image : {kOld, kThird}) {  // one that a slot has too, and one that none has
+  for (const Bytes& image : {kOld, kThird}) {  // one that is also in a slot, and one that is in no slot
     write(kProgram, image);
     ASSERT_TRUE(boot());
     EXPECT_TRUE(runs(image));

@@ -36,7 +36,7 @@ struct Board {
   SimulatedFlash flash = blank_flash();
   std::optional<Bytes> running;  ///< after boot(): what the boot code started
 
-  /// As a probe leaves it.
+  /// Writes the program as a probe does.
   void flash_by_probe(const Bytes& image) {
     flash.contents()[Slots::kProgram].assign(flash.sector_size(), std::byte{0xFF});
     std::ranges::copy(image, flash.contents()[Slots::kProgram].begin());
@@ -126,7 +126,7 @@ void check_after_cut(Board& board, const Trial& trial, std::uint32_t seed, const
   ASSERT_TRUE(!is_new || is_on_trial || trial.is_healthy) << where << ": nobody confirmed it";
   ASSERT_TRUE(board.boot());
   ASSERT_EQ(board.running, is_on_trial ? kOld : is_new ? kNew : kOld) << where << ": at the next reset";
-  // And it can be done again.
+  // The update can be repeated.
   do_update(board, announcement_of(kNewer), kNewer, true);
   ASSERT_EQ(board.running, kNewer) << where;
   ASSERT_FALSE(board.is_on_trial()) << where;

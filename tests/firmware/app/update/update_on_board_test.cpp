@@ -23,14 +23,14 @@ class UpdateOnBoard : public testing::Test {
  protected:
   using Bench = firmware_test::BoardOnABench<float>;
 
-  /// As large as the axis board's, and as whoever has flashed it left it.
+  /// Flash as large as the axis board's, in the state in which it was flashed.
   UpdateOnBoard() {
     images_.contents()[0].assign(images_.sector_size(), std::byte{0xFF});
     std::ranges::copy(old_image, images_.contents()[0].begin());
     start();
   }
 
-  /// The boot code, then a program that knows the header of the image that it is.
+  /// Runs the boot code, then a program that knows the header of its own image.
   void start() {
     if (bench) {
       images_ = bench->board.image_flash();
@@ -58,7 +58,7 @@ class UpdateOnBoard : public testing::Test {
     EXPECT_EQ(firmware::decode(server->answer(firmware::encode(request)), reply), Status::ok);
     return reply;
   }
-  /// With the server that stands for the image.
+  /// Asks the server of the running image.
   void run(int periods) {
     for (int k = 0; k < periods; ++k) {
       bench->application.control_period();
@@ -126,7 +126,7 @@ TEST_F(UpdateOnBoard, ReturnsByItselfWhereNobodyConfirms) {
   EXPECT_EQ(slot(2).state, static_cast<std::uint8_t>(SlotState::tried));
   EXPECT_EQ(slot(2).runs, 0);
   run(31'000);
-  EXPECT_FALSE(bench->board.wants_restart()) << "the old image is on no trial";
+  EXPECT_FALSE(bench->board.wants_restart()) << "the old image is not on trial";
 }
 
 TEST_F(UpdateOnBoard, IsRefusedWhileAnAxisIsEnabled) {
@@ -169,7 +169,7 @@ TEST_F(UpdateOnBoard, SaysWhyItRefusesAnImage) {
   EXPECT_EQ(ask(MessageType::read_slot, firmware::ReadSlotRequest{3}).status, Status::malformed);
 }
 
-/// Forwards, confirmed; and back by an update to the old image.
+/// Updates and confirms; then updates back to the old image.
 TEST_F(UpdateOnBoard, ParametersTablesAndFaultsStayBothWays) {
   bench->fit_and_enable_x();
   ask(MessageType::disable, firmware::AxesRequest{1});

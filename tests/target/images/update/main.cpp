@@ -1,5 +1,5 @@
-// A program behind boot code, AXIS_IMAGE_NUMBER, which takes another one as an update. The emulator has put that one's
-// bytes into memory.
+// A program behind boot code, AXIS_IMAGE_NUMBER, which takes another one as an update. The emulator has put the bytes
+// of the other program into memory.
 #include "firmware/app/update/image_update.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/survival_record.hpp"
@@ -39,7 +39,7 @@ bool take_other(ImageUpdate<CodeMemoryFlash>& update) {
   return update.finish(refusal, kAtOnce) == UpdateResult::ok;
 }
 
-/// As a chip is that was flashed: blank but for the program.
+/// State of a newly flashed chip: blank except for the program.
 void blank() {
   const std::size_t marks = flash.sector_size() - sizeof(SlotMarks);
   std::memset(reinterpret_cast<std::byte*>(CodeMemoryFlash::kFirstAddress) + marks, 0xFF, sizeof(SlotMarks));
@@ -59,8 +59,8 @@ extern "C" void watchdog_warning() {
 
 extern "C" void control_interrupt() {}
 
-/// 'b' blanks the flash but for the program, 'u' takes the other image, 'c' confirms this one, 'r' resets, 'h' hangs,
-/// 'q' ends the emulator.
+/// 'b' blanks the flash except for the program, 'u' takes the other image, 'c' confirms this one, 'r' resets, 'h'
+/// hangs, 'q' ends the emulator.
 extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
   take_over_survival_record(ResetCause::unknown);
