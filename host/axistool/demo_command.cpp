@@ -40,7 +40,7 @@ void run(const DemoArguments& arguments) {
   const host::Terminal terminal = host::terminal_of(stdout);
   fmt::print("{}\n", host::terminal_table(host::figures_table(shown.figures), terminal));
   fmt::print("{}\n", shown.agrees()
-                         ? host::coloured("All figures agree with their references.", host::Tone::good, terminal)
+                         ? host::coloured("Every figure agrees with its reference.", host::Tone::good, terminal)
                          : host::coloured("Some figures differ.", host::Tone::bad, terminal));
   if (arguments.emps.empty())
     fmt::print("The real EMPS drive was left out: give the folder of its public data set with --emps DIR.\n");
