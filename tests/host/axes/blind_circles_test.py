@@ -163,8 +163,8 @@ def write(path: Path, motor: dict[str, list[float]], table: tuple[list[float], l
 
 
 def true_sizes(causes: dict[str, float], draw: dict[str, float], has_bar: bool, motor: dict[str, list[float]]) -> dict[str, float]:
-    """The change of the radial deviation when one cause is removed: its range at steady feed.""" turning = [k for k in
-    range(1, len(PATH)) if abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[0] - 1.0) < 0.01
+    """The change of the radial deviation when one cause is removed: its range at steady feed."""
+    turning = [k for k in range(1, len(PATH)) if abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[0] - 1.0) < 0.01
                or abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[1] - 1.0) < 0.01]
     whole = radial(*table_of(motor, causes, draw)) if has_bar else radial(motor["x"], motor["y"])
     sizes = {}
