@@ -7,7 +7,7 @@
 namespace host {
 
 /// Writes `text` to a file beside the target of `path` (links are followed, rights are kept), fsyncs, renames. Throws
-/// Failure naming the path and the system's reason: as output_target() does, permission, or bad_input (disk full).
+/// Failure naming the path and the system's reason: those of output_target(), permission, or bad_input (disk full).
 void write_file_atomically(const std::string& path, std::string_view text);
 
 /// Writes `text` on standard output and flushes it. Throws Failure(bad_input) if it could not be written completely.

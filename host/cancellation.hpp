@@ -7,18 +7,18 @@
 
 namespace host {
 
-/// Thrown by a computation that finds itself cancelled.
+/// Thrown by a computation that was cancelled.
 struct Cancelled : std::exception {
   const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// The cancellation flag of this thread's computation; null: it cannot be cancelled.
+/// The cancellation flag of this thread's computation; null if it cannot be cancelled.
 inline const std::atomic<bool>*& cancel_flag() {
   thread_local const std::atomic<bool>* flag = nullptr;
   return flag;
 }
 
-/// While it exists, this thread's computation ends with Cancelled soon after `flag` is set.
+/// During its lifetime, this thread's computation ends with Cancelled soon after `flag` is set.
 class CancelledBy {
  public:
   explicit CancelledBy(const std::atomic<bool>* flag) : before_(std::exchange(cancel_flag(), flag)) {}

@@ -1,4 +1,4 @@
-// Wrappers of Eigen's solvers, compiled once: an instance for each size and file takes seconds to compile.
+// Wrappers of Eigen's solvers, compiled once, because each instance in each file takes seconds to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,14 +9,14 @@ namespace host {
 /// Eigenvalues of a square matrix, in Eigen's order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
-/// Eigenvalues of a symmetric matrix, ascending, and the unit vectors that belong to them, a column each.
+/// Eigenvalues of a symmetric matrix, ascending, and the unit eigenvectors as columns.
 struct SymmetricSpectrum {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 SymmetricSpectrum symmetric_spectrum(const Eigen::MatrixXd& matrix);
 
-/// Singular values, descending, and right singular vectors, a column each, of a matrix with at least as many rows as
+/// Singular values, descending, and right singular vectors as columns, of a matrix with at least as many rows as
 /// columns.
 struct RightSingular {
   Eigen::VectorXd values;
@@ -39,7 +39,7 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& values);
 Eigen::MatrixXd symmetric_inverse(const Eigen::MatrixXd& matrix);
-/// The same for a fixed size that is solved for every sample.
+/// The same for a fixed size, used for every sample.
 Eigen::Matrix3d symmetric_solution_of_3(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& values);
 
 /// Solution of a square, invertible system, by LU with partial pivoting.

@@ -1,5 +1,5 @@
-// Limits of the size of inputs. Larger input is refused with the limit's name before it costs memory or time, because a
-// foreign file may be damaged, accidentally or on purpose. host/README.md lists the limits.
+// Size limits of inputs, which may be damaged, accidentally or on purpose. Larger input is refused before it costs
+// memory or time, and the message names the limit. host/README.md lists the limits.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace host {
 struct ByteLimit {
   std::string_view of;  ///< the limited input, for messages
   std::size_t bytes;
-  bool in_lines;  ///< a text: a line longer than kLongestLine ends the reading at once (/dev/zero never ends)
+  bool in_lines;  ///< text: a line longer than kLongestLine ends the reading at once (/dev/zero never ends)
 };
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
@@ -22,13 +22,13 @@ inline constexpr ByteLimit kProgramSize{"a G-code program", 64 * kMebibyte, true
 inline constexpr ByteLimit kRecordSize{"a record", 1024 * kMebibyte, true};
 inline constexpr ByteLimit kLogSize{"a log", 1024 * kMebibyte, false};
 
-/// Numbers of a record or log, unpacked: 400 MB in memory; an hour of five channels at 2.7 kHz.
+/// Numbers in an unpacked record or log: 400 MB in memory, or an hour of five channels at 2.7 kHz.
 inline constexpr std::size_t kMostLogNumbers = 50'000'000;
 
-/// Of a model. The largest model of the search has a tenth of each.
+/// Limits of a model. The largest model of the search has a tenth of each.
 inline constexpr std::size_t kMostEffects = 64, kMostHarmonics = 128, kMostKnots = 1000;
 
-/// Of a G-code program: some 350 bytes and 0.1 ms of planning a move, 100 bytes a node.
+/// Limits of a G-code program. A move takes some 350 bytes and 0.1 ms of planning, a node 100 bytes.
 inline constexpr std::size_t kMostPathMoves = 200'000, kMostPathNodes = 2'000'000;
 inline constexpr double kLongestPath_s = 36'000.0;
 

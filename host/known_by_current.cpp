@@ -8,7 +8,7 @@ namespace host {
 
 namespace {
 
-/// Limit that marks a drive without converter: as many volts as a record may hold amperes.
+/// Command limit that marks a drive without a known converter: the highest current (A) that a record may hold.
 constexpr double kNoConverter_V = 1e4;
 
 bool is_rotary(const sim::DataSheet& sheet) { return sheet.kind == sim::DriveKind::rotary; }
@@ -27,12 +27,11 @@ bool is_known_by_current(const sim::DataSheet& sheet) { return sheet.dac_limit_V
 
 void require_volts(const sim::DataSheet& sheet, std::string_view name, std::string_view what) {
   if (!is_known_by_current(sheet)) return;
-  throw Failure(
-      ExitCode::bad_input,
-      fmt::format("drive '{}': {} needs the {} of a volt, and its data sheet gives that of the current alone; "
-                  "add {} to [drive]",
-                  name, what, is_rotary(sheet) ? "torque" : "force",
-                  is_rotary(sheet) ? "amplifier_gain_A_per_V" : "force_constant_N_per_V"));
+  throw Failure(ExitCode::bad_input,
+                fmt::format("drive '{}': {} needs the {} per volt, but its data sheet gives only that per ampere; "
+                            "add {} to [drive]",
+                            name, what, is_rotary(sheet) ? "torque" : "force",
+                            is_rotary(sheet) ? "amplifier_gain_A_per_V" : "force_constant_N_per_V"));
 }
 
 }  // namespace host

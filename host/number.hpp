@@ -15,7 +15,7 @@ inline std::string_view trim_blanks(std::string_view text) {
 }
 
 /// Parses all of `text`, except surrounding blanks, as a number with a decimal point; empty if it is not a number or
-/// does not fit a double. "nan" and "inf" are numbers here: callers check std::isfinite.
+/// exceeds the range of double. Accepts "nan" and "inf": callers check std::isfinite.
 inline std::optional<double> parse_number(std::string_view text) {
   text = trim_blanks(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
@@ -30,7 +30,7 @@ struct NamedNumber {
   double value;
 };
 
-/// NAME=NUMBER as options take it, finite and above 0; empty when it is not that.
+/// Parses NAME=NUMBER of an option; empty unless the number is finite and above 0.
 std::optional<NamedNumber> parse_named_number(std::string_view text);
 
 /// The weight of the last digit of a number in text: 0.001 for "12.500", 10 for "3e1".

@@ -1,4 +1,4 @@
-// Opens a board by its name: usb:SERIAL, sim, socket:PATH.
+// Opens a board by its device name: usb:SERIAL, sim, socket:PATH.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 namespace host {
 
 /// Names as in open_device(), and boards within this process: "model:FILE", a simulated board with this drive on every
-/// axis; "plant:DRIVE.toml:COMMAND", a simulated board with one axis whose plant is a program. `patience`: time-out of
+/// axis; "plant:DRIVE.toml:COMMAND", a simulated board with one axis whose plant is a program. `patience`: time-out for
 /// an answer. Throws Failure.
 BoardClient open_board(const std::string& device, std::chrono::duration<double> patience);
 

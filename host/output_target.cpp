@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Device and number of a file: the same under every name.
+/// Device and inode of a file: the same under every name.
 using FileIdentity = std::pair<dev_t, ino_t>;
 
 std::set<FileIdentity>& protected_inputs() {

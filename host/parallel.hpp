@@ -12,8 +12,8 @@
 
 namespace host {
 
-/// Calls work(index) for 0 ... count-1 on all cores, in no particular order; the first exception is thrown again here.
-/// Cancelling this thread cancels all of them.
+/// Calls work(index) for 0 ... count-1 on all cores, in no particular order; the first exception is rethrown in this
+/// thread. Cancelling this thread cancels all calls.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, Work work) {
   std::atomic<std::size_t> next{0};

@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// The bytes of a file. Throws Failure(bad_input) naming the path and the system's reason, or the limit that it
-/// exceeds; it then reads no more than the limit.
+/// The bytes of a file, read up to the limit at most. Throws Failure(bad_input) naming the path and the system's
+/// reason, or the exceeded limit.
 std::string read_file(const std::string& path, const ByteLimit& limit);
 
 /// Text of a document.

@@ -10,7 +10,7 @@ namespace host {
 /// Stays loaded until the program ends.
 class SharedLibrary {
  public:
-  /// `file` as the dynamic linker finds it: a name, or a path.
+  /// `file`: a name or a path for the dynamic linker.
   explicit SharedLibrary(const std::string& file) : handle_(dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
     if (handle_ == nullptr) why_not_ = dlerror();
   }
@@ -19,7 +19,7 @@ class SharedLibrary {
   const std::string& why_not() const { return why_not_; }
 
   /// Sets `symbol` to the library's function or variable of this name, with the type from the library's header; false
-  /// if there is none.
+  /// if the library has no such symbol.
   template <typename Symbol>
   bool find(Symbol*& symbol, const char* name) const {
     symbol = reinterpret_cast<Symbol*>(dlsym(handle_, name));

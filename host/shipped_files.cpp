@@ -41,7 +41,7 @@ std::string file_or_shipped(const std::string& name, const std::string& folder, 
   const std::vector<std::string> shipped = names_in(folder);
   if (std::ranges::find(shipped, stem) != shipped.end()) return shipped_file(folder + "/" + stem + ".toml");
   const std::vector<std::string_view> known(shipped.begin(), shipped.end());
-  throw Failure(ExitCode::usage, fmt::format("{}: no such file, and no shipped {} is called so{}; those are: {}", name,
+  throw Failure(ExitCode::usage, fmt::format("{}: no such file, and no shipped {} of this name{}; shipped: {}", name,
                                              what, did_you_mean(stem, known), fmt::join(shipped, ", ")));
 }
 

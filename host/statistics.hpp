@@ -1,4 +1,4 @@
-// Small statistics that several folders need.
+// Basic statistics for several folders.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 
 namespace host {
 
-/// Half of a normal distribution's 95 % interval, in standard deviations.
+/// Half width of a normal distribution's 95 % interval, in standard deviations.
 inline constexpr double kNormal95 = 1.96;
 
-/// 0 for no values; the next function likewise.
+/// Both functions return 0 if there are no values.
 inline double largest_magnitude(const std::vector<double>& values) {
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));
@@ -23,7 +23,7 @@ inline double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Quantile: the value that `part` (0 to 1) of the others do not exceed. Needs at least one value.
+/// Quantile: the value that the fraction `part` (0 to 1) of the values does not exceed. Needs at least one value.
 inline double quantile(std::vector<double> values, double part) {
   const auto rank = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, rank);

@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// All errors are Failure(bad_input) that name file, line, field and remedy.
+/// All errors are Failure(bad_input) with file, line, field and remedy.
 class TomlFields {
  public:
   /// `where`: name of the table in messages, for example "[[move]]". The table must outlive this.
@@ -24,14 +24,14 @@ class TomlFields {
   double not_negative(std::string_view key);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
-  /// Lists; empty where the key is absent.
+  /// Lists; empty if the key is absent.
   std::vector<double> numbers(std::string_view key);
   std::vector<std::string> texts(std::string_view key);
   bool toggle(std::string_view key, bool otherwise);
-  /// Position of the text of `key` among `known`.
+  /// Index in `known` of the text of `key`.
   std::size_t choice(std::string_view key, const std::vector<std::string_view>& known);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string_view>& known);
-  /// The tables of an array of tables; empty if it is absent.
+  /// The tables of an array of tables; empty if the key is absent.
   std::vector<const toml::table*> tables(std::string_view key);
   const toml::table* sub_table(std::string_view key);
   bool has(std::string_view key) const { return table_.contains(key); }

@@ -1,4 +1,4 @@
-// Checks and writes TOML for all readers of the tool.
+// Parses TOML and writes TOML strings.
 #pragma once
 
 #include <toml++/toml.h>
@@ -8,11 +8,12 @@
 
 namespace host {
 
-/// Parses a file's text. Throws Failure(bad_input) naming `name`, line and remedy if it is not TOML, or if a key has so
-/// many parts (`a.b.c…`) that destroying the tree would exhaust the stack: no format here has more than four parts.
+/// Parses a file's text. Throws Failure(bad_input) naming `name`, line and remedy if it is not TOML, or if a key has
+/// too many parts (`a.b.c…`): no format here needs more than four, and destroying a very deep tree would exhaust the
+/// stack.
 toml::table parse_toml(std::string_view text, std::string_view name);
 
-/// A TOML string of any text: the basic one, with what it must escape.
+/// Any text as a basic TOML string, with the required escapes.
 std::string toml_string(std::string_view text);
 
 }  // namespace host

@@ -22,15 +22,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr int kHats = 8;  ///< of the memory, over the angle
+constexpr int kHats = 8;  ///< hat functions of the memory over the angle
 constexpr double kUsualMemory_um = 5.0;
 constexpr double kPlace_um = 1000.0;  ///< prior standard deviation of centre and radius
-constexpr double kLeastNoise = 0.2;   ///< rows have noise of size 1
+constexpr double kLeastNoise = 0.2;   ///< lower limit of the noise, relative to the rows' nominal noise of 1
 constexpr double kCauseOdds = 0.25;   ///< prior probability of a cause
 constexpr std::size_t kMostCauses = 10, kTried = 3;
-constexpr double kWorthTrying = -3.0;  ///< nats
-constexpr double kHopeless = 15.0;     ///< nats below the total: no rival
-constexpr double kWorthSaying = 0.02;  ///< least probability of an alternative cause
+constexpr double kWorthTrying = -3.0;  ///< smallest gain with which a cause is tried, nats
+constexpr double kHopeless = 15.0;     ///< nats below the total: not an alternative
+constexpr double kWorthSaying = 0.02;  ///< smallest probability of a reported alternative cause
 
 using Causes = std::vector<CircleCause>;
 
@@ -40,7 +40,7 @@ std::vector<RowRun> runs_of(const CircleRows& rows) {
   return runs;
 }
 
-/// Smooth functions of the angle for each sensor, equal and opposite in both directions; without their part in centre
+/// Smooth functions of the angle for each sensor, once equal and once opposite in both directions, orthogonal to centre
 /// and radius.
 Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
   Memory memory;
@@ -76,7 +76,7 @@ Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
   return memory;
 }
 
-/// Centre and radius of every pass by every sensor.
+/// Columns for centre and radius of every pass and sensor.
 MatrixXd places_of(const CircleRows& rows) {
   MatrixXd places = MatrixXd::Zero(rows.deviation().size(), 3 * static_cast<Index>(rows.blocks().size()));
   Index at = 0;
@@ -145,7 +145,7 @@ class CircleSearch {
       all.segment(columns_before(causes, i), causes[i].columns.cols()) = causes[i].deviations;
     return all;
   }
-  /// First columns of the causes.
+  /// Number of columns before this cause.
   Index columns_before(const Causes& causes, std::size_t at) const {
     Index count = places_.cols();
     for (std::size_t i = 0; i < at; ++i) count += causes[i].columns.cols();
@@ -169,7 +169,7 @@ class CircleSearch {
     return near(a.period_mm, b.period_mm) && near(a.frequency_Hz, b.frequency_Hz);
   }
 
-  /// All causes that could be added to these, with their gain, the best first.
+  /// All causes that could be added to `causes`, with their gain, the best first.
   std::vector<std::pair<double, CircleCause>> promising(const Evidence& evidence, const EvidenceFit& fit,
                                                         const Causes& causes, bool with_waves) const {
     std::vector<std::pair<double, CircleCause>> list;
@@ -206,7 +206,7 @@ class CircleSearch {
     return list;
   }
 
-  /// Waves at the period or frequency that fits best beside all others.
+  /// Refines each wave's period or frequency together with all other causes.
   void refine(Causes& causes, const EvidenceFit& fit) const {
     for (std::size_t i = 0; i < causes.size(); ++i) {
       if (!is_wave(causes[i])) continue;
@@ -217,7 +217,7 @@ class CircleSearch {
     }
   }
 
-  /// Adds causes one by one while each gains, without a memory that would absorb them.
+  /// Forward selection: adds causes one by one while each gains. Uses no memory, which would absorb them.
   Causes forward() const {
     Causes causes;
     EvidenceFit fit =
@@ -248,7 +248,7 @@ class CircleSearch {
     return full_.fit(columns(causes), deviations(causes), {.colour = near.colour, .sizes = near.sizes});
   }
 
-  /// Probability of each cause against none and against its alternatives, with the memory.
+  /// Probability of each cause against no cause and against its alternatives, with the memory.
   Result judged(const Causes& causes) const {
     Result result{causes, full_.fit(columns(causes), deviations(causes)), {}, {}, causes};
     const double all = result.fit.log_evidence + prior(causes);
@@ -304,7 +304,7 @@ MatrixXd at_samples(const std::vector<CirclePass>& passes, const CircleCause& ca
 
 double range_of(const VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
-/// Largest height of waves and spikes.
+/// The largest amplitude, for waves and spikes.
 double amount_of(const CircleCause& cause, const VectorXd& factors, double um) {
   if (cause.period_mm || cause.frequency_Hz) return 0.5 * um;
   if (cause.kind == "reversal_spike") return um;
@@ -320,7 +320,7 @@ CircleFinding finding_of(const CircleRows& rows, const CircleSearch& search, con
   const auto range = [&](const VectorXd& factors) { return range_of(samples * factors); };
   found.um = range(found.factors);
   found.amount = amount_of(found.cause, found.factors, found.um);
-  // Their covariance, and the slope of the range.
+  // Covariance of the factors, and the slope of the range.
   MatrixXd picked = MatrixXd::Zero(result.fit.information.rows(), count);
   picked.middleRows(first, count).setIdentity();
   MatrixXd covariance = result.fit.information.solve(picked).middleRows(first, count);
@@ -339,7 +339,7 @@ CircleFinding finding_of(const CircleRows& rows, const CircleSearch& search, con
   return found;
 }
 
-/// A cause is minor below one step of the encoders, if no other sensor shows it, or below a twentieth of the whole
+/// Limit below which a cause is minor: one encoder step if no outer sensor measures it, or a twentieth of the total
 /// deviation.
 double least_um(const std::vector<CirclePass>& passes) {
   constexpr double kMinorShare = 0.05;

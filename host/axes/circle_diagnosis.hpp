@@ -1,4 +1,4 @@
-// Why a circle is not round: ranked causes, each with its share in micrometres, from one linear model of signatures.
+// Causes of circle errors, ranked, each with its share in micrometres, from one linear model of signatures.
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@ struct CircleFinding {
   /// deviation.
   double um = 0.0;
   std::array<double, 2> ci95{};
-  double amount = 0.0;                   ///< in the cause's own unit; of waves and spikes the largest amplitude
-  std::optional<double> period_turns{};  ///< of the motor
-  double probability = 0.0;              ///< its probability, against none and against all alternatives
+  double amount = 0.0;                   ///< in the cause's own unit; for waves and spikes the largest amplitude
+  std::optional<double> period_turns{};  ///< period in turns of the motor
+  double probability = 0.0;              ///< probability against no cause and against all alternatives
   std::vector<std::pair<std::string, double>> instead;  ///< alternative causes with their probabilities
 };
 
 /// Terms of ISO 230-4, from the outer sensor if there is one, otherwise from the encoders; means over 1 degree.
 struct CircleFigures {
-  double G_um = 0.0;                      ///< circular deviation: largest less smallest radius about the best centre
+  double G_um = 0.0;                      ///< circular deviation: largest minus smallest radius about the best centre
   double F_max_um = 0.0, F_min_um = 0.0;  ///< radial deviation from the nominal circle
 };
 struct BidirectionalFigures {
@@ -38,16 +38,16 @@ struct BidirectionalFigures {
 struct CircleDiagnosis {
   std::vector<CirclePass> passes;
   std::vector<CircleFinding> causes;  ///< the largest first
-  std::vector<CircleFinding> minor;   ///< the same, for at most a twentieth of the deviation
+  std::vector<CircleFinding> minor;   ///< minor causes: at most a twentieth of the deviation
   std::vector<Unseen> unseen;
-  double rest_um = 0.0;                      ///< RMS of what no cause explains, beyond noise
+  double rest_um = 0.0;                      ///< RMS of the unexplained residual beyond noise
   std::vector<CircleFigures> figures;        ///< of each pass
   std::optional<BidirectionalFigures> both;  ///< the worst feed; absent with one direction only
 };
 
 CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes);
 
-/// Also gives the periods of the model's axis in turns of its motor. Throws Failure(usage), naming `path`, for a model
+/// Adds the periods in turns of the motor for the model's axis. Throws Failure(usage), naming `path`, for a model
 /// of another axis than x or y.
 void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path);
 

@@ -33,7 +33,7 @@ Curve curve_of(const CirclePass& pass) {
   return sum;
 }
 
-/// About the best centre of them all, in least squares.
+/// Shifts the curves to their common least-squares centre.
 void centre(std::vector<Curve*> curves) {
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(3);
@@ -58,7 +58,8 @@ std::array<double, 2> range(const std::vector<const Curve*>& curves) {
   return found;
 }
 
-/// A ballbar is not mounted at the nominal centre: its eccentricity is not an error of the machine.
+/// Whether deviations from the nominal centre count. A ballbar is not mounted at the nominal centre, so its
+/// eccentricity is not an error of the machine.
 bool is_about_nominal(const CirclePass& pass) { return pass.outer_um.empty() && pass.has_reference; }
 
 }  // namespace

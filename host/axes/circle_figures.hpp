@@ -10,7 +10,7 @@ namespace host {
 
 std::vector<CircleFigures> circle_figures(const std::vector<CirclePass>& passes);
 
-/// At the feed with the largest difference of the directions; empty without both at one feed.
+/// Figures at the feed with the largest difference of the directions; empty if no feed has both directions.
 std::optional<BidirectionalFigures> bidirectional_figures(const std::vector<CirclePass>& passes);
 
 }  // namespace host

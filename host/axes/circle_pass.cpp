@@ -16,11 +16,11 @@ namespace host {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kLeastTurn = 0.8 * kTurn;  ///< of a pass: one turn including acceleration and deceleration
-constexpr double kMostTurns = 3.0;          ///< of a pass: more add nothing
+constexpr double kLeastTurn = 0.8 * kTurn;  ///< shortest pass: one turn minus acceleration and deceleration
+constexpr double kMostTurns = 3.0;          ///< longest pass; more turns add no information
 constexpr std::size_t kMostPasses = 12;
 constexpr double kSteady = 0.02;    ///< relative change of the feed within a pass
-constexpr double kOnCircle = 0.02;  ///< of the radius
+constexpr double kOnCircle = 0.02;  ///< largest distance from the circle relative to the radius
 constexpr double kSpeedWindow_s = 0.03;
 
 template <typename... Args>
@@ -139,7 +139,7 @@ Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, co
   return {x0 + cx, y0 + cy, std::sqrt(std::max(0.0, found(2) + cx * cx + cy * cy))};
 }
 
-/// Fits a circle repeatedly, each time without the points before and after it.
+/// Fits a circle repeatedly, each time without the points of the motion before and after it.
 Circle find_circle(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> keep(x.size());
   for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = k;
@@ -179,7 +179,7 @@ std::vector<Stretch> steady_stretches(const PlaneRecord& plane, const Circle& ci
   std::size_t k = half;
   const std::size_t last = angle.size() - half;
   while (k < last) {
-    // A steady speed is the same a little later.
+    // A speed is steady if it is the same a little later.
     const double now = speed(k);
     const std::size_t later = k + 2 * half;
     const auto holds = [&](std::size_t at) {

@@ -18,23 +18,23 @@ struct CirclePass {
   double feed_mm_s = 0.0;
   double radius_mm = 0.0;
   double period_s = 0.0;
-  double lag_s = 0.0;     ///< by which the encoders lag the references along the circle; 0 without references
-  double count_um = 0.0;  ///< the encoders' step
+  double lag_s = 0.0;     ///< lag of the encoders behind the references along the circle; 0 without references
+  double count_um = 0.0;  ///< encoder step
   OuterSensor outer = OuterSensor::none;
   bool has_reference = false;
   std::vector<double> t_s, angle_rad;  ///< from +X, counter-clockwise, by the encoders
   std::vector<double> encoder_um;      ///< radial deviation of the encoders
-  std::vector<double> outer_um;        ///< of the outer sensor; empty without one
+  std::vector<double> outer_um;        ///< radial deviation of the outer sensor; empty without one
 
   double turn_rad_s() const { return feed_mm_s / radius_mm; }
   double direction() const { return is_ccw ? 1.0 : -1.0; }
 };
 
-/// Records of both axes in one (x_mm, y_mm, with x_ref_mm, y_ref_mm where references were logged: what `run --capture`
-/// writes), or a record of axis x and one of axis y each (`# drive: x`, `# drive: y`: what `hil -o` writes), paired in
-/// their order. Outer sensors: columns x2_mm and y2_mm (or x2_mm in both records of a pair), or a ballbar's radius_mm
-/// (its length or what it deviates by) or radius_um. Throws Failure(bad_input) naming the record and what it lacks;
-/// refused where no turn at a steady feed is found; usage for more stretches than make sense.
+/// Accepts records with both axes (x_mm, y_mm, optionally x_ref_mm, y_ref_mm: the output of `run --capture`), or pairs
+/// of records of axis x and axis y (`# drive: x`, `# drive: y`: the output of `hil -o`), paired in their order. Outer
+/// sensors: columns x2_mm and y2_mm (or x2_mm in both records of a pair), or a ballbar's radius_mm or radius_um (its
+/// length or its deviation). Throws Failure(bad_input) naming the record and the missing channel; refused if no turn at
+/// a steady feed is found; usage if there are too many passes.
 std::vector<CirclePass> circle_passes(const std::vector<Record>& records);
 
 }  // namespace host

@@ -117,13 +117,13 @@ Table unseen_table(const CircleDiagnosis& diagnosis) {
 Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtitle) {
   Report report("Circle", subtitle);
   report.verdict(verdict_of(diagnosis));
-  report.section("What was seen");
+  report.section("Measured circle");
   report.add(as_seen(diagnosis));
   report.add(figures_table(diagnosis));
-  report.section("Why", fmt::format("Unexplained: {:.2f} µm RMS beyond noise.", diagnosis.rest_um));
+  report.section("Causes", fmt::format("Unexplained: {:.2f} µm RMS beyond noise.", diagnosis.rest_um));
   report.add(causes_table(diagnosis));
   for (const CircleFinding& found : diagnosis.causes) report.add(share_of(diagnosis, found));
-  report.section("What stays unknown");
+  report.section("Not observable");
   report.add(unseen_table(diagnosis));
   return report;
 }

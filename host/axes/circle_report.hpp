@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// The circle magnified in both directions, each cause with its own figure and share, the terms of ISO 230-4, and
-/// causes that these sensors do not show.
+/// The magnified circle in both directions, each cause with its plot and share, the terms of ISO 230-4, and the causes
+/// that these sensors cannot show.
 Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtitle);
 
 std::string circle_text(const CircleDiagnosis& diagnosis, const Terminal& terminal);

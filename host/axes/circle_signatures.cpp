@@ -13,15 +13,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kRowsAPass = 800;
-constexpr double kUsual_um = 10.0;  ///< of a cause
+constexpr double kUsual_um = 10.0;  ///< prior standard deviation of a cause
 constexpr double kLeastNoise_um = 0.02;
-constexpr double kLeastLagAngle = 0.02;  ///< rad: below it, a lag and a delay give the same circle
+constexpr double kLeastLagAngle = 0.02;  ///< rad: below it, lag and delay have the same effect on the circle
 constexpr double kFirstKnot_s = 0.003, kKnotRatio = 1.6, kSpikeForms = 12.0;
 constexpr int kSpikeKnots = 7;
 
 constexpr int kLoopPowers = 5;
 
-/// Noise of the rows, from their second differences.
+/// Noise of the rows, estimated from their second differences.
 double noise_of(const Eigen::VectorXd& values) {
   std::vector<double> differences;
   for (Eigen::Index k = 2; k < values.size(); ++k)
@@ -87,7 +87,7 @@ CircleCause with_amount(CircleCause made, double per_um, const char* unit) {
   return made;
 }
 
-/// Whether feeds differ by more than the unsteadiness of a pass.
+/// Feeds that differ by more than the variation within a pass.
 std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
   std::vector<double> feeds;
   for (const CirclePass& pass : passes)
@@ -96,7 +96,7 @@ std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
   return feeds;
 }
 
-/// After each reversal the axis lags by a spike. `forms`: its shape over the time since the reversal, with separate
+/// A spike of lag after each reversal of the axis. `forms`: its shapes over the time since the reversal, with separate
 /// factors for each feed, and for each end if `by_end`.
 CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::function<double(double)>>& forms,
                   bool by_end) {
@@ -112,7 +112,7 @@ CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::func
   return cause(rows, "reversal_spike", {axis}, signatures, false, -std::log(kSpikeForms));
 }
 
-/// A rise with exponential decay, and straight lines between some times at least one row apart.
+/// Adds spikes with two shapes: a rise with exponential decay, and straight lines between times at least one row apart.
 void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& list) {
   for (const bool by_end : {false, true}) {
     for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035})
@@ -130,7 +130,7 @@ void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& lis
   }
 }
 
-/// Differences between the axes' loops. A lag reduces the radius, a delay does not.
+/// Adds differences between the axes' loops. A lag reduces the radius, a delay does not.
 void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
   const double feed = most(rows.passes(), feed_of), acceleration = most(rows.passes(), acceleration_of);
   const auto late = [=](const CirclePass& pass, std::size_t k) {
@@ -151,7 +151,7 @@ void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
         with_amount(cause(rows, "delay_between_axes", "xy", {late}, false, -std::log(9.0)), ms_per_um, "ms"));
 }
 
-/// Causes that only a sensor at the table shows.
+/// Adds causes that only a sensor at the table shows.
 void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
   const double radius = most(rows.passes(), radius_of);
   const auto outer = [&](const char* kind, const std::string& axis, const CircleRows::Signature& signature) {
@@ -250,7 +250,7 @@ bool shows_through(double frequency_Hz, double row_s) {
 }
 
 CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value) {
-  constexpr double kPlaces = 200.0;  // periods or frequencies that differ within a circle
+  constexpr double kPlaces = 200.0;  // number of distinguishable periods or frequencies within a circle
   using Wave = double (*)(double);
   const Wave waves[] = {[](double a) { return std::cos(a); }, [](double a) { return std::sin(a); }};
   std::vector<CircleRows::Signature> signatures;
@@ -262,7 +262,7 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
             return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
           });
   } else {
-    // The loop responds to a torque: powers of j times the frequency, which is proportional to the axis's speed.
+    // The loop's response to a torque, as a series in j times the frequency, which is proportional to the axis's speed.
     const double top = most(rows.passes(), feed_of);
     for (int power = 0; power < (kind == WaveKind::torque_ripple ? kLoopPowers : 1); ++power)
       for (const Wave wave : waves)

@@ -16,7 +16,7 @@ struct CircleBlock {
   std::size_t pass;
   bool is_outer;
   Eigen::Index first, end;
-  double weight;  ///< 1 / noise, 1/um: rows of every sensor have noise of size 1
+  double weight;  ///< 1 / noise, 1/um, so that weighted rows of every sensor have noise 1
 };
 
 /// All rows of all passes and sensors, each the mean of some samples.
@@ -24,9 +24,9 @@ class CircleRows {
  public:
   explicit CircleRows(const std::vector<CirclePass>& passes);
 
-  /// Of a pass and a sample, um.
+  /// Radial deviation at a sample of a pass, um.
   using Signature = std::function<double(const CirclePass& pass, std::size_t sample)>;
-  /// As rows, times their weights; 0 in rows of the encoders if `outer_only`.
+  /// The signature in all rows, times their weights; 0 in rows of the encoders if `outer_only`.
   Eigen::VectorXd column(const Signature& signature, bool outer_only) const;
   /// The same for each block separately.
   Eigen::VectorXd block_column(const Signature& signature, const CircleBlock& block) const;
@@ -35,11 +35,11 @@ class CircleRows {
   const std::vector<CirclePass>& passes() const { return passes_; }
   const std::vector<CircleBlock>& blocks() const { return blocks_; }
   const Eigen::VectorXd& weights() const { return weights_; }
-  /// Of the middle of a row.
+  /// Angle at the middle of each row.
   const Eigen::VectorXd& angle_rad() const { return angle_; }
   const Eigen::VectorXd& time_s() const { return time_; }
   bool has_outer() const { return has_outer_; }
-  /// Duration of a row of a pass; of the fastest pass.
+  /// Duration of a row, of a pass and of the fastest pass.
   double row_s(std::size_t pass) const { return static_cast<double>(samples_a_row_[pass]) * passes_[pass].period_s; }
   double row_s() const { return row_s_; }
 
@@ -58,7 +58,7 @@ class CircleRows {
 struct CircleCause {
   std::string kind, axis;  ///< axis: "x", "y", "xy"
   std::vector<CircleRows::Signature> signatures;
-  bool outer_only = false;     ///< the encoders do not see it
+  bool outer_only = false;     ///< only an outer sensor shows it
   Eigen::MatrixXd columns;     ///< the signatures as rows
   Eigen::VectorXd deviations;  ///< prior standard deviation of the factors, um
   double log_prior = 0.0;
@@ -68,26 +68,24 @@ struct CircleCause {
   std::string amount_unit = "um";
 };
 
-/// Cycles of a wave per row of the fastest pass up to which the row shows it.
+/// Largest number of cycles of a wave per row of the fastest pass at which the rows show it.
 inline constexpr double kMostCyclesARow = 0.4;
-/// Whether the mean over a pass's rows shows a wave, also as an alias, which its signature includes.
+/// Whether rows, which are means, show the wave, possibly as an alias, which its signature includes.
 bool shows_through(double frequency_Hz, double row_s);
 
 enum class WaveKind { cyclic_error, torque_ripple, vibration };
 
-/// Causes without a nonlinear parameter, and reversal spikes with each of several decay times: everything that these
-/// sensors show.
+/// Causes that these sensors show: those without a nonlinear parameter, and reversal spikes with several decay times.
 std::vector<CircleCause> plain_causes(const CircleRows& rows);
 
 /// A wave over the travel of an axis (value: its period, mm) or over time (frequency, Hz).
 CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value);
 
-/// Torque ripple near the loop's natural frequency, where a series in the frequency does not describe the loop's
-/// response.
+/// Torque ripple near the loop's natural frequency, where a series in the frequency does not describe the loop.
 CircleCause ripple_through_any_loop(const CircleRows& rows, char axis, double period_mm);
 
 /// The wave of this kind over this axis that fits the residual best, on a grid of periods or frequencies. `left`: the
-/// residual's rows times their weights.
+/// weighted rows of the residual.
 CircleCause best_wave(const CircleRows& rows, const Eigen::VectorXd& left, WaveKind kind, char axis);
 /// The same near a given wave.
 CircleCause nearby_wave(const CircleRows& rows, const Eigen::VectorXd& left, const CircleCause& wave);

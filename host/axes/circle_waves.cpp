@@ -25,7 +25,7 @@ class WaveSearch {
     }
     along_ = rows.angle_rad().array() - (axis == 'x' ? 0.0 : 0.5 * std::numbers::pi);
     along_ = along_.array().cos();
-    constexpr double kTurns = 8.0;  // fewer cycles per turn change the circle's shape
+    constexpr double kTurns = 8.0;  // waves with fewer cycles per turn change the circle's shape
     lowest_ = over_time() ? kTurns * turn_Hz : 1.5 / radius_;
     highest_ = 0.99 * kMostCyclesARow / rows.row_s() / (over_time() ? 1.0 : feed_);
     step_ = over_time() ? 0.3 / duration_s_ : 0.15 / radius_;
@@ -55,7 +55,7 @@ class WaveSearch {
     at_ = rate;
   }
 
-  /// Part of the squared residual, with free phases for each pass and sensor, or common ones.
+  /// Part of the squared residual that a wave explains, with separate or common phases of passes and sensors.
   double taken(double rate) const {
     double sum = 0.0;
     Vector2d pull = Vector2d::Zero(), own = Vector2d::Zero();

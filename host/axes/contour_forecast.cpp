@@ -14,19 +14,19 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSteady_s = 0.3, kRest_s = 0.7;
-constexpr double kHighest_Hz = 150.0;  ///< a jerk-limited motion has no content above
+constexpr double kHighest_Hz = 150.0;  ///< a jerk-limited motion has no significant content above it
 constexpr double kTelling_um = 0.1;
 
 /// Speeds along a line from rest to rest, sample by sample, mm/s.
 std::vector<double> line_speeds(double feed, const ReferenceLimits& limits, double period_s) {
-  double ramp_s = limits.acceleration / limits.jerk;  // of the acceleration
+  double ramp_s = limits.acceleration / limits.jerk;  // time in which the acceleration builds up
   double level_s = feed / limits.acceleration - ramp_s;
   if (level_s < 0.0) {
     ramp_s = std::sqrt(feed / limits.jerk);
     level_s = 0.0;
   }
   const double up_s = 2.0 * ramp_s + level_s, peak = feed / (ramp_s + level_s);
-  const auto speed_at = [&](double t) {  // while it speeds up
+  const auto speed_at = [&](double t) {  // during the acceleration
     if (t <= 0.0) return 0.0;
     if (t >= up_s) return feed;
     const double from_end = std::min(t, up_s - t), ramp = std::min(from_end, ramp_s);
@@ -42,7 +42,7 @@ std::vector<double> line_speeds(double feed, const ReferenceLimits& limits, doub
   return speeds;
 }
 
-/// Following error per speed of the reference, s.
+/// Following error divided by the speed of the reference, s.
 Complex lag(const ServoAxis& axis, double f_Hz) {
   const double period_s = axis.plant.sample_period_s;
   const Complex step = 1.0 - std::polar(1.0, -2.0 * std::numbers::pi * f_Hz * period_s);
@@ -80,7 +80,7 @@ Complex following(const ServoAxis& axis, double f_Hz) {
 FeedContour contour_forecast(const ServoAxis& x, const ServoAxis& y, double feed_mm_s, const ReferenceLimits& limits) {
   const double f_Hz = feed_mm_s / (2.0 * std::numbers::pi * kForecastRadius_mm);
   const Complex a = following(x, f_Hz), b = following(y, f_Hz);
-  // Half axes p, q of (a cos, b sin): p^2 + q^2 = |a|^2 + |b|^2, p q = Re(a b*).
+  // Half axes p, q of the ellipse (a cos, b sin): p^2 + q^2 = |a|^2 + |b|^2, p q = Re(a b*).
   const double difference = std::norm(a) + std::norm(b) - 2.0 * std::abs((a * std::conj(b)).real());
   return {feed_mm_s, line_45_um(x, y, feed_mm_s, limits),
           1e3 * kForecastRadius_mm * std::sqrt(std::max(0.0, difference))};

@@ -41,7 +41,7 @@ FinePlant drive_of(const AxisTask& task) {
   return task.measured ? fine_plant(task.measured->response, *task.measured->fit) : fine_plant(plant_of(task.model));
 }
 
-/// Without a tachometer if one axis has none: all estimators must have equal sensors.
+/// Removes all tachometers if one axis has none, because all estimators must have the same sensors.
 std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& tasks) {
   std::vector<sim::DriveDescription> models;
   bool all = true;
@@ -55,7 +55,8 @@ std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& ta
 }
 
 /// Variances that make all estimators equal in travel, speed and acceleration of the table: the noise of the worst
-/// sensors, and disturbances (in volts) as fast as those of the axis with the least acceleration per volt.
+/// sensors, and disturbances (in volts) that accelerate the table like those of the axis with the least acceleration
+/// per volt.
 std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescription>& models,
                                             const DesignOptions& options) {
   std::vector<AxisDesign> designs;
@@ -86,8 +87,8 @@ std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescript
   return list;
 }
 
-/// Feed-forward of the reference velocity alone ignores viscous friction, which differs between axes. It is therefore
-/// fed forward as friction, and every loop is that of a double integrator.
+/// Feed-forward of the reference velocity alone ignores viscous friction, which differs between axes. Viscous friction
+/// is therefore fed forward as friction, so that every loop is that of a double integrator.
 std::vector<sim::DriveDescription> equal_drives(std::vector<sim::DriveDescription> models,
                                                 const DesignOptions& options) {
   if (!options.zero_phase)
@@ -127,7 +128,8 @@ struct Found {
   ControlFilterChoice filters;
 };
 
-/// The highest bandwidth for all drives, with the filters that allow it; without requirements that of `options`.
+/// The highest common bandwidth of all drives, with the filters that allow it; without requirements, the bandwidth of
+/// `options`.
 Found best_loop(const std::vector<LoopTask>& drives, const std::vector<AxisTask>& tasks, const LoopAim& aim,
                 const DesignOptions& options) {
   if (!aim.modulus && !aim.crossover_Hz) return {{options.bandwidth_Hz, 0.0, {}}, aim.filters};

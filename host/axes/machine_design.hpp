@@ -14,27 +14,27 @@ namespace host {
 
 struct AxisTask {
   sim::DriveDescription model;
-  std::optional<AxisResponse> measured;  ///< with a fit; without it the model is used
+  std::optional<AxisResponse> measured;  ///< measured response with a fit; if empty, the model is used
 };
 
 struct AxisLoop {
-  sim::DriveDescription model;  ///< as designed for: without its tachometer if another axis has none
+  sim::DriveDescription model;  ///< model of the design: without its tachometer if another axis has none
   AxisDesign design;
   ControlFilterChoice filters;
   std::optional<double> modulus;  ///< modulus margin on the measured drive, or on the model
-  DriveLimits limits;             ///< of its references
+  DriveLimits limits;             ///< limits of the references
 };
 
 struct LoopSet {
   std::vector<AxisLoop> axes;
-  std::vector<FeedContour> contour;  ///< by feed; the worst of all pairs of axes
+  std::vector<FeedContour> contour;  ///< for each feed, the worst of all pairs of axes
   std::string remaining;             ///< effect that causes most of that error; empty if none dominates
 };
 
 struct MachineDesign {
   LoopSet matched;         ///< equal poles of loop and estimator, equal filters and feed-forward
-  LoopSet own;             ///< the best of each axis
-  std::string limited_by;  ///< what limits the bandwidth of the matched loop
+  LoopSet own;             ///< the best loop of each axis
+  std::string limited_by;  ///< cause that limits the bandwidth of the matched loop
 };
 
 /// `options`, `aim` and `limits` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods,

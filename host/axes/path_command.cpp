@@ -14,7 +14,7 @@ sim::EffectEntry effect(const char* kind, std::map<std::string, double> paramete
   return {.kind = kind, .parameters = std::move(parameters), .ci95 = {}, .from = {}};
 }
 
-/// One drive along the path, point by point.
+/// Computes the command that one drive needs along the path, point by point.
 class NeedAlongPath {
  public:
   NeedAlongPath(const sim::DriveDescription& model, double unit_mm, std::size_t axis)
@@ -96,7 +96,7 @@ std::optional<sim::DriveDescription> drive_of_parameters(const firmware::AxisVal
 
 std::vector<CommandNeed> largest_commands(const PlannedPath& path, const PathScale& scale,
                                           const std::vector<std::optional<sim::DriveDescription>>& drives) {
-  constexpr int kParts = 8;  // between two knots, whose polynomials bend no oftener
+  constexpr int kParts = 8;  // checked intervals between two knots
   std::vector<CommandNeed> needs;
   for (std::size_t axis = 0; axis < drives.size(); ++axis) {
     if (!drives[axis]) continue;

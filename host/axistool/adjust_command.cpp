@@ -1,4 +1,4 @@
-// axistool adjust: sets values of a model by hand, and tells the errors before and after.
+// axistool adjust: sets values of a model by hand and prints the errors before and after.
 #include <fmt/format.h>
 
 #include <memory>
@@ -40,7 +40,7 @@ void run(const AdjustArguments& arguments) {
 
 void add_adjust(CLI::App& app) {
   auto arguments = std::make_shared<AdjustArguments>();
-  CLI::App* command = app.add_subcommand("adjust", "set values of a model by hand; tells the errors before and after");
+  CLI::App* command = app.add_subcommand("adjust", "set values of a model by hand; print the errors before and after");
   add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
   command->add_option("values", arguments->values, "NAME=VALUE, e.g. cogging.cosine_Nm=0.2")->required();
   add_input(*command, "--train", arguments->train, "training records")->required();

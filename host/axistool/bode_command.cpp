@@ -1,4 +1,4 @@
-// axistool bode: the frequency response of an axis, measured now or in records, with margins and resonances.
+// axistool bode: frequency response of an axis, measured now or from records, with margins and resonances.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& fo
   return records;
 }
 
-/// Records checked by the gate; without a model, the drive is taken from the first record.
+/// The records, checked by the gate. Without a model, takes the drive from the first record.
 std::vector<host::Record> admitted(const BodeArguments& arguments, const Controlled& found) {
   const sim::DriveDescription drive =
       found.model ? *found.model : host::presumed_sheet(host::read_record(arguments.what.front()));
@@ -172,10 +172,10 @@ void add_bode(CLI::App& app) {
                       "highest frequency, Hz (default: a quarter of the control rate, at most 250)");
   command
       ->add_option("--realisations", arguments->plan.realisations,
-                   "least number of runs in each band, each with different phases")
+                   "minimum number of runs in each band, each with different phases")
       ->capture_default_str()
       ->check(CLI::Range(2, 100));
-  command->add_option("--seed", arguments->plan.seed, "of the phases")->capture_default_str();
+  command->add_option("--seed", arguments->plan.seed, "seed of the random phases")->capture_default_str();
   command->add_flag("--linear", arguments->linear, "the drive is linear: use m and m/s");
   command->add_option("--countdown", arguments->countdown_s, "seconds before anything moves")
       ->capture_default_str()

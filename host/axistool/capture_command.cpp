@@ -62,7 +62,7 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
   return settings;
 }
 
-/// The scale on the table is recorded where the board has one and the data sheet says what a count of it is.
+/// Adds the scale on the table to the record if the board has one and the data sheet gives its resolution.
 void settle_scale(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings& settings) {
   constexpr firmware::Channel kScale = firmware::Channel::table_counts;
   if (!arguments.sheet.empty())
@@ -77,7 +77,7 @@ void settle_scale(const CaptureArguments& arguments, host::BoardClient& board, h
                                     arguments.axis, name));
   if (is_asked && !(settings.table_resolution > 0.0))
     throw host::Failure(host::ExitCode::usage,
-                        fmt::format("{} needs what a count of the scale is: --sheet DRIVE.toml, with "
+                        fmt::format("{} needs the resolution of the scale: --sheet DRIVE.toml, with "
                                     "[drive.load_encoder] in it",
                                     name));
   const bool in_memory = arguments.last || host::is_board_trigger(arguments.trigger);
@@ -186,7 +186,7 @@ void run(const CaptureArguments& arguments) {
 
 void add_capture(CLI::App& app) {
   auto arguments = std::make_shared<CaptureArguments>();
-  CLI::App* command = app.add_subcommand("capture", "Record an axis at loop rate, as it moves -> record");
+  CLI::App* command = app.add_subcommand("capture", "Record an axis at loop rate while it moves -> record");
   add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
   command->add_option("AXIS,--axis", arguments->axis, "x, y, …")->capture_default_str();
   command
@@ -207,7 +207,8 @@ void add_capture(CLI::App& app) {
   command->add_option("--pre", arguments->before, "time to keep before the trigger: 0.1, 50ms");
   command->add_flag("--wide", arguments->wide,
                     "in the board's memory: keep full precision of speeds, errors and voltages");
-  command->add_flag("--last", arguments->last, "read what the board's memory holds, even from before its last reset");
+  command->add_flag("--last", arguments->last,
+                    "read the capture in the board's memory, even from before its last reset");
   command->add_option("--wait", arguments->wait_s, "seconds to wait for the trigger")->capture_default_str();
   command
       ->add_option("--jog", arguments->jogs,
@@ -217,7 +218,8 @@ void add_capture(CLI::App& app) {
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");
   add_input(*command, "--sheet", arguments->sheet,
-            "data sheet of the drive: with [drive.load_encoder] the record has the table by its scale, x2_mm");
+            "data sheet of the drive; with [drive.load_encoder] the record also has the table position from the scale, "
+            "x2_mm");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(

@@ -1,4 +1,4 @@
-// axistool circle: why a circle is not round, from records of it, or from circles that a board's axes make for it.
+// axistool circle: causes of circle errors, from records or from circles that a board makes.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -31,7 +31,7 @@ struct Pass {
   std::string name, program;
 };
 
-/// Both ways at every feed, about a centre to the right of where the axes stand.
+/// Both directions at every feed, about a centre on the positive side of x from the present position.
 std::vector<Pass> passes_of(const CircleArguments& arguments) {
   std::vector<Pass> passes;
   for (const double feed : arguments.feeds_mm_s)
@@ -122,10 +122,9 @@ void run(const CircleArguments& arguments) {
 void add_circle(CLI::App& app) {
   auto arguments = std::make_shared<CircleArguments>();
   CLI::App* command = app.add_subcommand("circle", "why a circle is not round: each cause in um, with its odds");
-  add_input(
-      *command, "RECORD", arguments->records,
-      "records of circles: one with x_mm and y_mm, or pairs with one of each axis (# drive: x, # drive: y); without "
-      "any, a board makes the circles");
+  add_input(*command, "RECORD", arguments->records,
+            "records of circles: one with x_mm and y_mm, or pairs with one of each axis (# drive: x, # drive: y); "
+            "without records, a board makes the circles");
   add_input(*command, "--model", arguments->axis_models,
             "models of the axes, X.toml Y.toml: periods are also given in turns");
   add_output(*command, "-o,--output", arguments->folder, "folder for the records of the circles that a board makes",

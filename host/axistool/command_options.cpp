@@ -27,7 +27,7 @@ void require_finite(const CLI::Option& option) {
                           fmt::format("{}: {}: expected a finite number", option.get_name(), text));
 }
 
-/// "jog.csv", or "x=model.toml" where an option assigns files.
+/// `argument`: "jog.csv", or "x=model.toml" if the option assigns files to axes.
 void protect(const std::string& argument) {
   host::protect_input(argument);
   if (const std::size_t equals = argument.find('='); equals != std::string::npos)

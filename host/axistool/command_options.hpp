@@ -8,7 +8,7 @@ namespace axistool {
 
 enum class FileRole {
   input,
-  device,  ///< an input where the words name a file: model:FILE, plant:FILE:COMMAND
+  device,  ///< an input if the text names a file: model:FILE, plant:FILE:COMMAND
   output,
   output_folder,
 };

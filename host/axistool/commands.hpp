@@ -68,7 +68,7 @@ void add_serve(CLI::App& app);
 void add_scoreboard(CLI::App& app);
 void add_commission(CLI::App& app);
 
-/// All of them, by their names.
+/// All commands, sorted by name.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
 /// Error message for an unknown command, with the closest match.

@@ -26,7 +26,7 @@ namespace axistool {
 namespace {
 
 struct CommissionArguments : DeviceArguments {
-  std::vector<std::string> axes, models, drives, boxes;  ///< of the last three one for all axes, or one for each
+  std::vector<std::string> axes, models, drives, boxes;  ///< models, drives, boxes: one for all axes, or one for each
   std::string plant, folder, home, from, to;
   double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz, modulus = host::CommissionOptions{}.modulus;
   std::uint64_t seed = 1;
@@ -38,7 +38,7 @@ bool is_simulated(const CommissionArguments& arguments) {
   return !arguments.models.empty() || !arguments.plant.empty();
 }
 
-/// Of axis `i`; empty if the option was not given.
+/// The value for axis `i`; empty if the option was not given.
 std::string of_axis(const std::vector<std::string>& given, std::size_t i) {
   return given.empty() ? "" : given[given.size() == 1 ? 0 : i];
 }
@@ -49,12 +49,12 @@ hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
   return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
 }
 
-/// An axis and where its results are kept.
+/// An axis and the folder of its results.
 struct Axis {
   std::unique_ptr<host::FolderLock> lock;
   std::unique_ptr<host::CommissionFolder> folder;
   host::CommissionOptions options;
-  sim::DriveDescription machine;  ///< to be simulated
+  sim::DriveDescription machine;  ///< to simulate
 };
 
 /// The board, or simulated axes behind the board's own protocol.
@@ -104,7 +104,7 @@ sim::DriveDescription sheet_of(const std::string& drive, const std::string& mode
   if (!drive.empty()) return host::read_drive(drive);
   if (!model.empty()) {
     sim::DriveDescription sheet = host::read_drive(host::machine_file(model));
-    sheet.effects.clear();  // they are what is looked for
+    sheet.effects.clear();  // the effects are to be found
     return sheet;
   }
   if (std::filesystem::exists(kept, fault)) return host::read_drive(kept);
@@ -209,7 +209,7 @@ void run(const CommissionArguments& arguments) {
   std::vector<host::CommissionedAxis> done;
   for (Axis& axis : axes) {
     if (is_machine) talk.tell(fmt::format("Axis {}", axis.options.axis_name));
-    // A machine continues where it was interrupted: an axis that is complete stays as it is.
+    // An interrupted machine continues: a complete axis stays unchanged.
     const std::size_t next = is_machine ? axis.folder->first_undone().value_or(last + 1) : 0;
     const std::size_t from = arguments.from.empty() ? next : host::commission_step(arguments.from);
     if (from <= to) host::commission_axis(board, axis.options, talk, *axis.folder, from, to);
@@ -253,7 +253,7 @@ void add_commission(CLI::App& app) {
   command->add_option("AXIS", arguments->axes, "x, y, …; several: the axes of one machine")->required();
   add_output(*command, "-o,--output", arguments->folder, "folder for every result", FileRole::output_folder)
       ->required();
-  // Once each: the axes may follow.
+  // One value for each occurrence of the option, so that the names of axes may follow it.
   add_input(*command, "--sim", arguments->models,
             "simulate this machine instead of using a board: a model file or a shipped machine; with several axes once "
             "for all, or once for each")

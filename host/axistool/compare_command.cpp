@@ -41,7 +41,7 @@ struct CompareArguments {
   }
 };
 
-/// One record keeps the name that was given; of several each gets its number and name: pred.csv -> pred-2-jog.csv.
+/// With one record, the given name; with several, number and name are appended: pred.csv -> pred-2-jog.csv.
 std::string predictions_path(const CompareArguments& arguments, std::size_t index) {
   if (arguments.records.size() == 1) return arguments.predictions;
   const std::filesystem::path path(arguments.predictions);
@@ -51,7 +51,7 @@ std::string predictions_path(const CompareArguments& arguments, std::size_t inde
       .string();
 }
 
-/// Records without any effort: what position and reference say.
+/// For records without command and current: statistics of position and reference.
 void run_tracking(const CompareArguments& arguments, const std::vector<host::Record>& records) {
   if (!arguments.predictions.empty() || !arguments.report.empty())
     throw host::Failure(host::ExitCode::bad_input,
@@ -63,7 +63,7 @@ void run_tracking(const CompareArguments& arguments, const std::vector<host::Rec
   if (arguments.json != "-") fmt::print("{}", host::tracking_text(errors));
 }
 
-/// A file that ends in .toml is a model.
+/// Files that end in .toml are models.
 void sort_files(CompareArguments& arguments) {
   arguments.models = {arguments.model};
   arguments.records.clear();

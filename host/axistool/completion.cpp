@@ -21,7 +21,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Text up to the first line feed: a shell shows one line.
+/// Text up to the first line feed, because shells show one line.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 void add_effects_to(Completions& all) {
@@ -44,11 +44,11 @@ void add_devices_to(Completions& all) {
   try {
     for (const host::UsbBoard& board : host::find_usb_boards())
       all.words.push_back({"usb:" + board.serial_number, board.product});
-  } catch (const host::Failure&) {  // without the library that looks for boards there is none to be named
+  } catch (const host::Failure&) {  // the library that finds boards is missing, so no board can be listed
   }
   try {
     if (std::filesystem::exists(host::default_socket_path())) all.words.push_back({"sim", "simulated board"});
-  } catch (const std::exception&) {  // no folder for it: no board in it
+  } catch (const std::exception&) {  // its folder does not exist, so there is no simulated board
   }
 }
 
@@ -102,7 +102,7 @@ void add_values(const CLI::App& app, const CLI::App& command, const std::string&
   if (name == "IMAGE") all.files.push_back("hex");
 }
 
-/// "TEXT:{unbiased-ls,ls}" -> the words between the braces; nothing where an option takes anything else.
+/// "TEXT:{unbiased-ls,ls}" -> the words between the braces; empty if the option has no such list.
 Words listed_values(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find(":{"), close = type.rfind('}');
@@ -141,7 +141,7 @@ class Place {
     for (std::size_t k = 1; k + 1 < words.size(); ++k) pass(words[k]);
   }
 
-  /// The option or positional whose value the last word is, if any.
+  /// The option or positional that takes the last word, if any.
   const CLI::Option* taker() const { return open_; }
   bool must_be_value() const { return open_ != nullptr && given_ < open_->get_items_expected_min(); }
   const CLI::Option* positional() const {

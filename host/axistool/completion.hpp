@@ -1,4 +1,4 @@
-// Candidates at a place of a command line, for shell completion.
+// Candidates for the last word of a command line, for shell completion.
 #pragma once
 
 #include <CLI/CLI.hpp>

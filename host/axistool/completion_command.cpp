@@ -1,4 +1,4 @@
-// axistool completion: the script for a shell's tab key; axistool complete: called by that script.
+// axistool completion: prints the script for a shell's tab key. axistool complete: called by that script.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,8 +11,8 @@ namespace axistool {
 
 namespace {
 
-// Each asks with the words up to the cursor. A line is a word, or a word, a tab and its help; ":files" and endings ask
-// for files.
+// Each script calls `axistool complete` with the words up to the cursor. A line of the answer is a word, or a word, a
+// tab and its help; ":files" and file endings request files.
 
 constexpr const char* kBash = R"sh(# bash completion of axistool
 _axistool() {

@@ -1,4 +1,4 @@
-// axistool demo: identification, control and checks at a glance.
+// axistool demo: identification, control and checks in one report.
 #include <fmt/format.h>
 
 #include <filesystem>

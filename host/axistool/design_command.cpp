@@ -149,7 +149,7 @@ sim::DriveDescription model_of(const std::string& path, const DesignArguments& a
   return model;
 }
 
-/// A file of each axis, named after it.
+/// The parameter file of an axis, named after it.
 std::string parameter_file(const std::string& folder, const std::string& axis) {
   for (const char c : axis)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_')

@@ -23,17 +23,17 @@ void add_change_options(CLI::App& command, DeviceArguments& arguments);
 
 host::BoardClient open_board(const DeviceArguments& arguments);
 
-/// Prints on standard output unless it belongs to JSON alone.
+/// False if standard output is reserved for JSON; then nothing else is printed there.
 bool talks(const DeviceArguments& arguments);
 
-/// Asks on a terminal, unless the consent is `given`; elsewhere only `option` gives it. Throws Failure(refused) on a
-/// no.
+/// Asks on a terminal unless consent is already `given`. Without a terminal only `option` gives consent. Throws
+/// Failure(refused) without consent.
 void require_consent(bool given, const std::string& question, std::string_view option);
-/// By --yes.
+/// The same; --yes gives consent.
 void require_consent(const DeviceArguments& arguments, const std::string& question);
 
 using host::axis_index;
-/// Of several; all when empty.
+/// Bit mask of the named axes; all axes if `names` is empty.
 std::uint8_t axis_mask(const std::vector<std::string>& names, std::size_t axes);
 
 }  // namespace axistool

@@ -24,7 +24,7 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.3g} %", 100.0 * *share) : "-";
 }
 
-/// The figures, as printed by compare.
+/// Prints the errors in the format of compare.
 void print_errors(const host::Diagnosis& diagnosis) {
   fmt::print("Prediction error over noise floor (1 is perfect)   train  validation\n");
   const auto row = [](const char* name, const host::ErrorOnSets& error) {
@@ -74,7 +74,7 @@ void print(const host::Diagnosis& diagnosis) {
 }
 
 struct DiagnoseArguments : InsightArguments {
-  std::string beliefs;  ///< a document of plan or diagnose
+  std::string beliefs;  ///< file with the JSON of plan or diagnose
   bool quick = false;
 };
 
@@ -116,7 +116,7 @@ void add_diagnose(CLI::App& app) {
             "prior odds: the JSON that plan or diagnose wrote before a planned run that is among --train");
   command
       ->add_flag("--quick", arguments->quick,
-                 "a first look: what the force balance alone shows, without the search by motion")
+                 "a first look by force-balance regression alone, without fitting effects to the motion")
       ->excludes("--believed");
   command->footer(
       "Example:\n"

@@ -1,4 +1,4 @@
-// axistool dial: readings of a dial gauge on the table.
+// axistool dial: lost motion from readings of a dial gauge on the table.
 #include <fmt/format.h>
 
 #include <memory>

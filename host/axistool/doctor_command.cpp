@@ -40,7 +40,7 @@ void print(const std::vector<host::DeviceCheck>& checks, std::FILE* where) {
   }
 }
 
-/// Without a board: checks the connection step by step.
+/// If no board answers: checks the connection step by step.
 void tell_the_way(const DeviceArguments& arguments) {
   if (!arguments.device.empty() && !arguments.device.starts_with("usb")) return;
   std::vector<host::DeviceCheck> checks;
@@ -62,7 +62,7 @@ void tell_the_way(const DeviceArguments& arguments) {
 void run(const DeviceArguments& arguments) {
   std::optional<host::BoardClient> opened;
   try {
-    opened.emplace(open_board(arguments));  // rights and presence: its failures have their remedies
+    opened.emplace(open_board(arguments));  // failures (no rights, no board) carry their own remedies
   } catch (const host::Failure& failure) {
     if (failure.code == host::ExitCode::no_such_device) tell_the_way(arguments);
     throw;

@@ -21,7 +21,7 @@ void run(const std::string& kind, const std::string& json) {
   if (info)
     fmt::print("{}", host::effect_page(*info, terminal));
   else
-    fmt::print("{}\n`axistool effects KIND` tells the equation, the parameters and what to measure.\n",
+    fmt::print("{}\n`axistool effects KIND` shows the equation, the parameters and what to measure.\n",
                host::effect_list(terminal));
 }
 

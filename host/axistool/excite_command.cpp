@@ -32,7 +32,7 @@ struct ExciteArguments : DeviceArguments {
   bool linear = false, as_set = false;
 };
 
-/// The board's parameters, with the data sheet's where one is given.
+/// The board's parameters, with the values of the data sheet if one is given.
 firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::BoardClient& board, std::uint8_t axis,
                                         std::optional<sim::DriveDescription>& drive) {
   firmware::ParameterValues values = board.read_values();
@@ -90,7 +90,7 @@ struct Programme {
   Programme(const ExciteArguments& arguments, sim::DriveKind kind) : is_plan(arguments.kind.ends_with(".toml")) {
     if (is_plan) run = host::read_run_plan(arguments.kind);
     if (is_plan && !(arguments.numbers.empty() && arguments.closed_loop.empty()))
-      throw host::Failure(host::ExitCode::usage, "a planned run holds its own values; edit its file");
+      throw host::Failure(host::ExitCode::usage, "a planned run contains its own values; edit its file");
     if (arguments.box.empty() && !is_plan)
       throw host::Failure(
           host::ExitCode::refused,
@@ -151,7 +151,7 @@ std::string kinds_footer() {
       "  axistool excite x steps --box travel=40,speed=150,volts=3,time=5 --drive x.toml -o steps.csv\n"
       "  axistool excite x multisine amplitude=0.5 from=5 to=200 --closed-loop output --box … -o lines.csv\n"
       "  axistool excite x ladder 5 20 80 --box travel=100,speed=120,volts=5,time=20 -o ladder.csv\n"
-      "  axistool excite x run.toml -o run.csv       # what `axistool plan` wrote, piece by piece in one record\n"
+      "  axistool excite x run.toml -o run.csv       # what `axistool plan` wrote; all pieces in one record\n"
       "KIND and its values, all optional:\n";
   for (const host::ExcitationKindText& kind : host::kExcitationKindTexts)
     text += fmt::format("  {:<10} {}: {}\n", kind.name, kind.does, kind.numbers);
@@ -175,11 +175,11 @@ void add_excite(CLI::App& app) {
                       "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s; a planned run has its own");
   add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive: units of counts, volts and travel");
-  add_input(*command, "--params", arguments->parameters, "parameters to set before (axis-params/1), not saved");
-  command->add_flag("--as-set", arguments->as_set, "for an axis without a design: trust the units on the board");
+  add_input(*command, "--params", arguments->parameters, "parameters to set first (axis-params/1), not saved");
+  command->add_flag("--as-set", arguments->as_set, "for an axis without a design: use the scales on the board");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--closed-loop", arguments->closed_loop,
-                      "where to add it: 'reference', or the controller's 'output'");
+                      "where to add the excitation: 'reference', or the controller's 'output'");
   command->add_option("--seed", arguments->seed, "seed of a multisine's phases")->capture_default_str();
   command->add_option("--countdown", arguments->countdown_s, "seconds before anything moves")
       ->capture_default_str()

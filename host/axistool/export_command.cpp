@@ -48,10 +48,10 @@ void add_export(CLI::App& app) {
   add_output(*command, "-o,--output", arguments->path, "file to write; LinuxCNC's .hal file is written beside it")
       ->required();
   add_input(*command, "--record", arguments->record,
-            "record that gives the error of leaving out what the format cannot express");
+            "record on which to compute the error of omitted effects (those that the format cannot express)");
   add_json_option(*command, arguments->json);
   command->footer(
-      "Each file says what it cannot express.\n"
+      "Each file lists the effects that its format cannot express.\n"
       "Examples:\n"
       "  axistool export x.toml --to c -o x_friction.h\n"
       "  axistool export x.toml --to linuxcnc -o x_friction.comp --record jog.csv\n"

@@ -103,7 +103,7 @@ void faults(const FaultArguments& arguments) {
 void clear_faults(const FaultArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   if (!arguments.dry_run) board.clear_faults();
-  board.wait(std::chrono::milliseconds(arguments.dry_run ? 0 : 300));  // the self-test that follows
+  board.wait(std::chrono::milliseconds(arguments.dry_run ? 0 : 300));  // time for the self-test after clearing
   tell(arguments, board.status());
 }
 
@@ -114,7 +114,7 @@ void add_faults(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("faults", "Show a board's last 64 faults, with cause and remedy of those active now");
   add_output(*command, "--record", arguments->record,
-             "write the record that the axis kept from before its fault to this file");
+             "write the samples that the axis kept from before its fault to this file");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   add_device_options(*command, *arguments);
   command->footer(

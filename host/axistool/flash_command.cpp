@@ -1,4 +1,4 @@
-// axistool flash: writes an image onto a board: over USB or a serial port, with or without GPIO lines, or by a probe.
+// axistool flash: writes an image onto a board, over USB or a serial port, with or without GPIO lines, or by a probe.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ struct FlashArguments {
   bool by_probe = false, dry_run = false;
 };
 
-/// A folder for the file that is read back.
+/// A temporary folder for the image that is read back.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -110,7 +110,7 @@ void run(const FlashArguments& arguments) {
   if (image.begin == 0)
     throw host::Failure(host::ExitCode::bad_input,
                         fmt::format("{}: an image without the boot code in front of it does not start: give the .bin "
-                                    "file that `make firmware` leaves",
+                                    "file that `make firmware` writes",
                                     arguments.image));
   const ScratchFolder scratch;
   host::FlashRequest request = request_of(arguments, image);

@@ -98,14 +98,14 @@ void add_friction(CLI::App& app) {
   add_input(*command, "RECORD", arguments->records,
             "records with jogs in both directions; constant speeds are found automatically")
       ->required();
-  // Not an input in the sense of add_input(): the model may be written again under its own name.
+  // Not add_input(), because the model may be overwritten with the new one.
   command->add_option("--model", arguments->model, "model with inertia (and a first estimate of viscous friction)")
       ->required();
   add_output(*command, "-o,--output", arguments->output, "model to write, with the friction curve");
   command
       ->add_option("--method", arguments->method,
                    "joint: one fit of B', Coulomb, static, omega1, omega2 to the mean control signal; paper: as "
-                   "published, from the Kalman disturbance step by step")
+                   "published, from the Kalman disturbance, parameter by parameter")
       ->check(CLI::IsMember({"joint", "paper"}))
       ->capture_default_str();
   command->add_option("--settle", arguments->options.settle_s, "time to skip at the start of each constant speed, s")

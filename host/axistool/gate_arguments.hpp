@@ -1,4 +1,4 @@
-// Common to all commands that read records: the gate checks them, and its findings are printed first.
+// For all commands that read records: the gate checks them, and its findings are printed first.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ inline void add_accept_option(CLI::App& command, std::vector<std::string>& accep
       ->take_all();
 }
 
-/// Runs `work`; if a fault of the log ends it, the JSON document still names the fault.
+/// Runs `work`; if a fault of the log ends it, the JSON document states the fault.
 template <typename Work>
 void with_log_of_failure(const std::string& json, const std::string& format, Work work) {
   try {

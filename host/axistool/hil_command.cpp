@@ -46,7 +46,7 @@ std::string stem_of(const std::string& scenario, const std::string& folder) {
   return (std::filesystem::path(folder) / std::filesystem::path(scenario).stem()).string();
 }
 
-/// The files of a scenario are named after it, so two scenarios of one name would overwrite each other's files.
+/// Throws if two scenarios have the same name: their files are named after them and would overwrite each other.
 void check_names(const HilArguments& arguments) {
   std::map<std::string, std::string> taken;
   for (const std::string& path : arguments.scenarios) {
@@ -73,7 +73,7 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
   host::scenario_report(scenario, run).write(stem + ".html");
 }
 
-/// "x=FILE": model for this axis's controller instead of the scenario's.
+/// "x=FILE": a model for this axis's controller, which replaces the scenario's.
 host::ReplacedModel parse_model(const std::string& assignment) {
   const auto* const axis = std::ranges::find(host::kAxisNames, assignment.substr(0, assignment.find('=')));
   if (axis == host::kAxisNames.end() || assignment.find('=') == std::string::npos)
@@ -101,7 +101,7 @@ void list_shipped() {
     fmt::print("{:<32} {}\n", name, host::read_scenario(host::scenario_file(name)).name);
 }
 
-/// Runs the scenario unchanged, and again with the models of the command line; writes one page of both.
+/// Runs the scenario unchanged and with the models of the command line; writes one page with both.
 void run_before_and_after(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
   if (arguments.scenarios.size() != 1 || models.empty())
     throw host::Failure(host::ExitCode::usage, "--before-after needs one scenario, and --model for the new model");
@@ -193,7 +193,7 @@ void add_hil(CLI::App& app) {
   command->add_flag("--allow-program", arguments->allow_program,
                     "run the external plant programs that scenarios name, without asking");
   command->add_flag("--fault-page", arguments->fault_page,
-                    "inject every fault and print the page of faults and reactions (Markdown)");
+                    "inject every fault and print the table of faults and reactions (Markdown)");
   command->footer(
       "Examples:\n"
       "  axistool hil --list\n"

@@ -26,7 +26,7 @@ struct IdentifyArguments {
   host::MotionOptions options;
 };
 
-/// The data sheet to work with: the file that was named, or the paper's drive that the record names.
+/// The data sheet: the named file, or the paper's drive if the record names it.
 sim::DriveDescription drive_for(const IdentifyArguments& arguments, std::vector<std::string>& warnings) {
   if (!arguments.drive.empty()) return host::read_drive(arguments.drive);
   return host::drive_named_by(host::read_record(arguments.records.front()), warnings);
@@ -73,7 +73,7 @@ void print_table(const host::Identification& found, const std::string& output) {
   }
 }
 
-/// The page of compare, for the identified model on its own records.
+/// Writes the page of compare for the identified model on its own records.
 void write_report(const IdentifyArguments& arguments, const sim::DriveDescription& model) {
   std::vector<host::Record> records;
   for (const std::string& path : arguments.records) records.push_back(host::read_record(path));

@@ -1,4 +1,4 @@
-// axistool import: a record out of a log of any kind that is read.
+// axistool import: makes a record from a log.
 #include <fmt/format.h>
 
 #include <algorithm>

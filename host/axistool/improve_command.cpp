@@ -65,7 +65,7 @@ void print(const host::Addition& addition, const std::string& kind, const std::s
                    : fmt::format("  correlated with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
   }
   if (addition.kept_given) {
-    fmt::print("The addition predicts the held-back records worse: {} holds the model as given.\n", output);
+    fmt::print("The addition predicts the held-back records worse: {} contains the unchanged model.\n", output);
     return;
   }
   print_doubts(addition.judged.model);

@@ -53,7 +53,7 @@ void describe_board(const InfoArguments& arguments) {
   std::optional<firmware::ParameterValues> values;
   if (identity.schema_hash == firmware::kSchemaHash) values = board.read_values();
   const firmware::ParameterValues* known = values ? &*values : nullptr;
-  std::vector<std::string> tables;  // of pitch errors, an axis each
+  std::vector<std::string> tables;  // of pitch errors, one for each axis
   for (std::uint8_t axis = 0; known != nullptr && axis < status.axis.size(); ++axis)
     tables.push_back(
         host::read_pitch_text(board, axis, known->axis(axis).get<"pitch.on">(), host::count_mm_of(*known, axis)));

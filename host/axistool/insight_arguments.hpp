@@ -33,7 +33,7 @@ struct InsightArguments {
   }
 };
 
-/// A model and the records that the gate has accepted for it.
+/// A model and its records, accepted by the gate.
 struct InsightRecords {
   sim::DriveDescription model;
   host::Measurements measurements;

@@ -12,7 +12,8 @@ std::atomic<bool> was_interrupted = false;
 void handle_with(void (*handler)(int)) {
   std::signal(SIGINT, handler);
   std::signal(SIGTERM, handler);
-  if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup: its terminal may go
+  if (std::signal(SIGHUP, handler) == SIG_IGN)
+    std::signal(SIGHUP, SIG_IGN);  // started by nohup: closing the terminal must not end it
 }
 
 }  // namespace

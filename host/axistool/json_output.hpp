@@ -14,7 +14,7 @@ inline void add_json_option(CLI::App& command, std::string& destination) {
   add_output(command, "--json", destination, "write the result as JSON to this file; - prints only JSON");
 }
 
-/// "-" prints the one document on standard output; anything else is a file, replaced as a whole.
+/// `destination`: "-" for standard output, otherwise a file, which is replaced as a whole.
 inline void write_json(const nlohmann::json& document, const std::string& destination) {
   const std::string text = document.dump(2) + "\n";
   if (destination == "-") {

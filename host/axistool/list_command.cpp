@@ -48,7 +48,7 @@ void list_boards(const DeviceArguments& arguments) {
 void add_list(CLI::App& app) {
   auto arguments = std::make_shared<DeviceArguments>();
   CLI::App* command = app.add_subcommand("list", "List the boards that are plugged in, and the simulated one");
-  command->add_option("--device", arguments->device, "only this one: usb:SERIAL or sim");
+  command->add_option("--device", arguments->device, "list only this one: usb:SERIAL or sim");
   add_json_option(*command, arguments->json);
   command->footer(
       "Example:\n"

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Parses and runs; returns failures as exit codes.
+/// Parses the command line and runs the command; returns the exit code.
 int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -36,7 +36,7 @@ int run(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs steps that it tried in vain
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres would log rejected steps
   CLI::App app{"Identify feed drives, compare models with measurements, and find the physical effect that is missing."};
   app.require_subcommand(1);
   app.footer(

@@ -1,4 +1,4 @@
-// axistool man: the manual's pages, for packages.
+// axistool man: the manual pages, for packages.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace axistool {
 void add_man(CLI::App& app) {
   auto folder = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("man", "write the manual pages, one per command, in troff");
-  add_output(*command, "FOLDER", *folder, "where they go", FileRole::output_folder)->required();
+  add_output(*command, "FOLDER", *folder, "folder for the pages", FileRole::output_folder)->required();
   command->footer("Example:\n  axistool man man1 && man man1/axistool-identify.1");
   command->callback([folder, &app] {
     const std::filesystem::path place(*folder);

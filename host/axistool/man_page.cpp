@@ -10,7 +10,7 @@ namespace axistool {
 
 namespace {
 
-/// Plain text: no backslash, hyphen or leading dot that troff would take for its own.
+/// Escapes backslashes, hyphens and leading dots for troff.
 std::string roff(const std::string& text) {
   std::string safe;
   bool at_line_start = true;
@@ -73,7 +73,7 @@ std::string synopsis_of(const CLI::App& command) {
   return text + "\n";
 }
 
-/// Footers begin with "Example:" or "Examples:", whose lines are indented, and end in remarks.
+/// A footer begins with "Example:" or "Examples:" and its indented lines; remarks follow.
 std::string examples_of(const CLI::App& command) {
   std::string examples, notes;
   for (const std::string& line : CLI::detail::split(command.get_footer(), '\n')) {

@@ -1,4 +1,4 @@
-// Pages of the manual, from the same text as --help.
+// Manual pages, from the same text as --help.
 #pragma once
 
 #include <CLI/CLI.hpp>

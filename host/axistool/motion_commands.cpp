@@ -1,4 +1,4 @@
-// axistool enable, disable, jog, move: a board's axes in motion.
+// axistool enable, disable, jog, home, move: moves a board's axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct MotionArguments : DeviceArguments {
   double speed = 0.0;
 };
 
-/// By homing.mode.
+/// Names, indexed by homing.mode.
 constexpr std::array<const char*, 4> kHomingModes{"none", "switch", "index", "both"};
 
 double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::ParameterValues& values) {
@@ -86,7 +86,7 @@ void jog(const MotionArguments& arguments) {
                interrupted() ? " (interrupted)" : "");
 }
 
-/// The initial travel limits of a board are not real limits, because the travel of this axis is not known.
+/// Asks before a long move if the travel limits still have their initial values, because these are not the real limits.
 void ask_without_travel(const MotionArguments& arguments, const firmware::AxisValues& values, double way) {
   const auto is_initial = [&](std::string_view name, float value) {
     return value == std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name)->initial;
@@ -129,7 +129,7 @@ void add_take_over(CLI::App& command, MotionArguments& arguments) {
   command.add_flag("--take-over", arguments.take_over, "take control of the axes from another program");
 }
 
-/// Sets the homing mode with the loop open, then closes it again. Consent as for `enable`.
+/// Sets the homing mode with the loop open, then closes the loop again. Needs the same consent as `enable`.
 void set_homing(const MotionArguments& arguments, host::BoardClient& board, std::uint8_t axis) {
   const auto mask = static_cast<std::uint8_t>(1u << axis);
   require_consent(arguments, fmt::format("Close the control loop of axis {} and home it? It moves.", arguments.axis));
@@ -155,8 +155,8 @@ void home(const MotionArguments& arguments) {
   const auto mode = static_cast<std::size_t>(values.axis(axis).get<"homing.mode">());
   if (mode == 0 && !arguments.here && arguments.mode.empty())
     throw host::Failure(host::ExitCode::refused,
-                        fmt::format("axis {} has no way to find home (homing.mode is 0): axistool home {} --mode "
-                                    "switch, index or both; or --here if it stands at home",
+                        fmt::format("axis {} has no homing method (homing.mode is 0): axistool home {} --mode switch, "
+                                    "index or both; or --here if it stands at home",
                                     arguments.axis, arguments.axis));
   catch_interrupts();
   if (!arguments.dry_run) {

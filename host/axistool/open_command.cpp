@@ -62,7 +62,7 @@ void print(const host::OpenedFile& file) {
   if (const std::string next = host::next_run(file.understood); !next.empty()) fmt::print("  next: {}\n", next);
 }
 
-/// Asks on the terminal; without one, only --yes is an answer.
+/// Asks on the terminal; without a terminal, only --yes accepts.
 bool is_accepted(const host::Opening& opening, bool yes) {
   const std::vector<std::string> asks = opening.asks();
   if (asks.empty() || opening.records().empty() || yes) return true;
@@ -79,7 +79,7 @@ bool wants_verdict(const OpenArguments& arguments) {
   return !arguments.sheet.empty() || arguments.torque_constant > 0.0;
 }
 
-/// One axis of the logs, identified and diagnosed; its model and page beside the records.
+/// Identifies and diagnoses one axis of the logs; writes its model and page beside the records.
 nlohmann::json judge(const OpenArguments& arguments, const host::Opening& opening, const std::string& axis) {
   std::vector<host::Record> records;
   for (const host::OpenedRecord* record : opening.records())
@@ -113,7 +113,7 @@ nlohmann::json judge(const OpenArguments& arguments, const host::Opening& openin
   return document;
 }
 
-/// For every axis that has records; a refusal of one does not stop the others.
+/// The same for every axis that has records; a refusal of one axis does not stop the others.
 nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> axes;
   for (const host::OpenedRecord* record : opening.records())
@@ -131,8 +131,8 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
   return all;
 }
 
-/// Writes a data sheet for each axis, filled in as far as the log and --kt allow, and lists the missing fields. An
-/// existing one may have been filled in by hand, so it is kept.
+/// Writes a data sheet for each axis, filled in as far as the log and --kt allow, and lists the missing fields. Keeps
+/// an existing sheet, because it may have been filled in by hand.
 std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> written;
   for (const host::OpenedRecord* opened : opening.records()) {

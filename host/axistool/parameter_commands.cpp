@@ -58,7 +58,7 @@ void get_params(const ParameterArguments& arguments) {
   }
 }
 
-/// Downloads, or only prints the changes in a dry run.
+/// Sets the parameters on the board; in a dry run, only prints the changes.
 void change(host::BoardClient& board, const DeviceArguments& arguments, const ParameterValues& before,
             const ParameterValues& after, bool save) {
   host::require_fitting_set(after);
@@ -94,7 +94,8 @@ void reset_params(const ParameterArguments& arguments) {
   board.require_same_table();
   const ParameterValues before = board.read_values();
   if (!arguments.dry_run)
-    require_consent(arguments, "Set all parameters of the board to their initial values? Then no axis is fitted.");
+    require_consent(arguments,
+                    "Set all parameters of the board to their initial values? Afterwards no axis is fitted.");
   change(board, arguments, before, ParameterValues(before.axes()), arguments.save);
 }
 

@@ -1,4 +1,4 @@
-// Common to the commands on parameters: sets, differences, printing.
+// Common functions of the parameter commands.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ struct Difference {
   float before, after;
 };
 
-/// By the bits.
+/// Compares bit by bit.
 inline std::vector<Difference> differences(const firmware::ParameterValues& before,
                                            const firmware::ParameterValues& after) {
   std::vector<Difference> list;
@@ -25,13 +25,13 @@ inline std::vector<Difference> differences(const firmware::ParameterValues& befo
   return list;
 }
 
-/// The board's values, changed by those of a file or of NAME=VALUE arguments.
+/// The board's values with the changes of files and NAME=VALUE arguments.
 firmware::ParameterValues with_changes(firmware::ParameterValues values, const std::vector<std::string>& sources,
                                        const std::string& axis);
 
 void print_differences(const std::vector<Difference>& list, const char* before, const char* after);
 nlohmann::json differences_json(const std::vector<Difference>& list);
-/// A number, or a truth value.
+/// A JSON number, or true or false for a switch.
 nlohmann::json value_json(std::size_t place, float value);
 
 }  // namespace axistool

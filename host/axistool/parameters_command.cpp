@@ -1,4 +1,4 @@
-// axistool parameters: the table of the board's parameters, without a board.
+// axistool parameters: the table of the board's parameters; needs no board.
 #include <fmt/format.h>
 
 #include <memory>

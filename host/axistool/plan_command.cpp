@@ -1,4 +1,4 @@
-// axistool plan: the run that best tells the remaining explanations apart.
+// axistool plan: plans the run that best separates the remaining explanations.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -85,9 +85,11 @@ void run(const PlanArguments& arguments) {
 
 void add_plan(CLI::App& app) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command = app.add_subcommand("plan", "plan the run that tells the remaining explanations apart");
+  CLI::App* command = app.add_subcommand("plan", "plan the run that separates the remaining explanations");
   arguments->add_to(*command);
-  command->add_option("--rivals", arguments->rivals, "explanations to separate; default: those that diagnose leaves")
+  command
+      ->add_option("--rivals", arguments->rivals,
+                   "explanations to separate; default: those that diagnose cannot separate")
       ->delimiter(',')
       ->expected(1, -1);
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s")

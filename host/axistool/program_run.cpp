@@ -28,7 +28,7 @@ using host::Failure;
 
 std::atomic<bool> held = false;
 
-/// Blocks signals until they are polled: in the middle of a report they would look like a lost board.
+/// Blocks signals until they are polled, because a signal during a report would look like a lost board.
 class SignalsWait {
  public:
   SignalsWait() {
@@ -40,7 +40,7 @@ class SignalsWait {
   SignalsWait(const SignalsWait&) = delete;
   SignalsWait& operator=(const SignalsWait&) = delete;
 
-  /// Pending signals act now.
+  /// Handles pending signals now.
   void let_in() {
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
@@ -50,7 +50,7 @@ class SignalsWait {
   sigset_t signals_{};
 };
 
-/// One line on a terminal, rewritten.
+/// A progress line on the terminal, rewritten in place.
 class RunLine {
  public:
   RunLine(bool shows, const host::PlannedPath& path) : shows_(shows && ::isatty(STDERR_FILENO) != 0), path_(path) {}
@@ -79,14 +79,14 @@ class RunLine {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-/// Whether a waiting program continues, and the overrides.
+/// The operator's keys: overrides, and continuing a waiting program.
 class Operator {
  public:
   Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
       : board_(board), scale_(scale), relative_(relative), arguments_(arguments) {}
 
   host::PathWish wish(const host::PathProgress& progress, const Planned& planned) {
-    const std::string typed = keys_.take();  // also what was typed before a stop
+    const std::string typed = keys_.take();  // includes keys typed before a stop
     for (const char key : typed) override_.press(key);
     const bool is_rapid =
         std::ranges::binary_search(planned.program.rapid_lines, host::line_at(planned.path, progress.elapsed_s));
@@ -117,7 +117,7 @@ class Operator {
   const host::PathStop* announced_ = nullptr;
 };
 
-/// A program on a board, in parts: each probing move is one part, and the next part begins where it ended.
+/// Runs a program in parts: each probing move is one part, and the next part begins where it ended.
 class Parts {
  public:
   Parts(host::BoardClient& board, const host::PathBoard& machine, bool relative, const RunArguments& arguments)
@@ -184,7 +184,7 @@ class Parts {
     outcome_.planned_s += planned_.path.duration_s();
   }
 
-  /// Rows of a rest belong to a part beside it.
+  /// Compares the record with the plan. Rows at rest belong to an adjacent part.
   void compare_with_plan() {
     const host::PathCapture& capture = recorder_.capture();
     outcome_.lost_rows = capture.lost;
@@ -202,8 +202,8 @@ class Parts {
       host::write_record(host::path_record(capture, machine_, all_um), arguments_.capture);
   }
 
-  /// Whether the probe is already in the state that a move looks for. G38.3 and G38.5 end there at once (LinuxCNC,
-  /// motion/command.c: G38.2 and G38.4 are errors then, as the board says).
+  /// Whether the probe is already in the state that the move seeks. G38.3 and G38.5 then end at once; G38.2 and G38.4
+  /// are errors, reported by the board (as in LinuxCNC, motion/command.c).
   bool is_there(const host::GcodeProbe& probe) {
     const bool touches = (board_.probe_state().flags & firmware::kProbeTouches) != 0;
     return touches != probe.is_away;

@@ -1,4 +1,4 @@
-// Runs a G-code program on a board's axes: plans it, follows it (in parts if it probes), and obeys the operator.
+// Runs a G-code program on a board's axes: plans it, runs it (in parts if it probes), and handles the operator's keys.
 #pragma once
 
 #include <string>
@@ -33,9 +33,9 @@ struct ProbeResult {
 
 struct ProgramOutcome {
   firmware::PathEnd end = firmware::PathEnd::completed;
-  std::string failure;  ///< of a required probing move
+  std::string failure;  ///< message if a required probing move failed
   double path_s = 0.0, planned_s = 0.0;
-  double clock_s = 0.0;  ///< with holds, overrides and stops
+  double clock_s = 0.0;  ///< run time including holds, overrides and stops
   double worst_um = 0.0, squares_um2 = 0.0;
   std::size_t rows = 0, lost_rows = 0;
   std::vector<ProbeResult> probes;
@@ -47,17 +47,18 @@ inline std::string_view sought_by(const host::GcodeProbe& probe) {
   return probe.is_away ? "loss of contact" : "contact";
 }
 
-/// `probed`: end positions of its first probing moves.
+/// `probed`: end positions of the probing moves made so far.
 host::GcodeProgram read_program(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
                                 const host::PathPoint& start, const std::vector<host::PathPoint>& probed);
 host::PlannedPath plan_moves(const std::vector<host::PathMove>& moves, const RunArguments& arguments,
                              const host::PathBoard& board);
 host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale);
 
-/// Check before a program starts or continues after a stop: the axes must be homed and without faults.
+/// Checks, before a program starts or continues after a stop, that the axes are homed and have no fault. Throws
+/// Failure.
 void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative);
 
-/// Ctrl-Z holds and resumes the feed; a terminal's other ways of stopping a program end the path.
+/// From now on Ctrl-Z holds and resumes the feed; the other stop signals of a terminal end the path.
 void catch_signals();
 
 /// Runs it with enabled axes, from their present positions. Throws what run_path throws.

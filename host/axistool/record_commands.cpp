@@ -1,4 +1,4 @@
-// axistool cut, axistool shift: a part of a record; a record with a channel moved in time.
+// axistool cut: cuts out a part of a record. axistool shift: shifts a channel in time.
 #include <fmt/format.h>
 
 #include <memory>
@@ -49,7 +49,7 @@ void add_cut(CLI::App& app) {
   command->footer(
       "Example:\n"
       "  axistool cut log.csv --from 2.5 --to 9 -o moving.csv\n"
-      "Time stamps stay unchanged; the header says what was cut.");
+      "Time stamps stay unchanged; the header states the cut range.");
   command->callback([arguments] {
     tell(*arguments, host::cut_record(host::read_file(arguments->record, host::kRecordSize), arguments->record,
                                       arguments->from_s, arguments->to_s));

@@ -1,4 +1,4 @@
-// axistool robustness: the contour error of a machine that differs from its models.
+// axistool robustness: contour error of a machine that differs from its models.
 #include <fmt/format.h>
 
 #include <memory>
@@ -42,11 +42,11 @@ void run(const RobustnessArguments& arguments) {
 void add_robustness(CLI::App& app) {
   auto arguments = std::make_shared<RobustnessArguments>();
   CLI::App* command =
-      app.add_subcommand("robustness", "contour error where the machine differs from its models, by controller");
+      app.add_subcommand("robustness", "contour error if the machine differs from its models, for several controllers");
   add_input(*command, "MODEL", arguments->models, "models of both axes (axis-model/1)")->required();
   add_input(*command, "--params", arguments->params,
-            "board parameters of both axes (axis-params/1, from design), in the order of the models; without them a "
-            "design with its defaults");
+            "board parameters of both axes (axis-params/1, from design), in the order of the models; default: a design "
+            "with default settings");
   command->add_option("--radius", arguments->options.radius_mm, "radius of the circle, mm")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
@@ -56,7 +56,8 @@ void add_robustness(CLI::App& app) {
   command->add_option("--axis", arguments->axis, "axes that differ from their models")
       ->check(CLI::IsMember({"both", "x", "y"}))
       ->capture_default_str();
-  add_output(*command, "--report", arguments->report, "HTML page: a curve of each controller over each change");
+  add_output(*command, "--report", arguments->report,
+             "HTML page: curves of the error over each change, one for each controller");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
@@ -68,8 +69,8 @@ void add_robustness(CLI::App& app) {
       "reference velocity), with zero-phase feed-forward (ZPETC) too, with friction feed-forward too, with "
       "cancellation "
       "of\n"
-      "the estimated disturbance too. A feed-forward that cancels much depends on its model: measure again what makes\n"
-      "the largest difference.");
+      "the estimated disturbance too. Strong feed-forward depends on its model: measure again the parameters that\n"
+      "make the largest difference.");
   command->callback([arguments] {
     arguments->options.differs = {arguments->axis != "y", arguments->axis != "x"};
     run(*arguments);

@@ -33,13 +33,13 @@ host::PathPoint standing(const host::BoardState& status, const host::PathScale& 
   return point_of(at, scale);
 }
 
-/// As if no probe made contact.
+/// Plans the program as if the probe never made contact.
 Planned plan(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
              const host::PathPoint& start) {
   Planned planned{read_program(text, arguments, board, start, {}), {}};
   planned.path = plan_moves(planned.program.moves, arguments, board);
   if (planned.path.knots.size() < 2)
-    throw Failure(ExitCode::bad_input, fmt::format("{}: nothing in it moves", arguments.file));
+    throw Failure(ExitCode::bad_input, fmt::format("{}: the program contains no motion", arguments.file));
   return planned;
 }
 
@@ -70,7 +70,7 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
   return document;
 }
 
-/// The drive of each axis: by its model, else by the parameters.
+/// The drive of each axis: from its model, else from the parameters.
 std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& arguments,
                                                             const firmware::ParameterValues& values, std::size_t axes) {
   if (arguments.models.size() > axes)
@@ -111,7 +111,7 @@ void require_command(const std::vector<host::CommandNeed>& needs, const RunArgum
 
 bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
 
-/// A program that waits for an operator needs one.
+/// Throws if the program waits for an operator but there is no terminal.
 void require_operator(const RunArguments& arguments, const host::PlannedPath& path) {
   if (path.stops.empty() || arguments.passes_stops || has_terminal()) return;
   throw Failure(ExitCode::refused,
@@ -134,7 +134,7 @@ void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end)
     throw Failure(ExitCode::answer_is_no, fmt::format("{} before its end; the axes stand on the path", end_name(end)));
 }
 
-/// In words and, in `document`, for programs.
+/// Prints the outcome and adds it to the JSON `document`.
 void tell(const ProgramOutcome& outcome, const RunArguments& arguments, nlohmann::json& document) {
   document["duration_s"] = outcome.path_s;
   document["clock_s"] = outcome.clock_s;
@@ -164,7 +164,7 @@ void tell(const ProgramOutcome& outcome, const RunArguments& arguments, nlohmann
              outcome.worst_um);
 }
 
-/// A probing program needs a probe.
+/// Throws if the program probes but the board has no probe.
 void require_probe(host::BoardClient& board, const RunArguments& arguments, const host::GcodeProgram& program) {
   if (program.probes.empty() || (board.probe_state().flags & firmware::kProbeWired) != 0) return;
   throw Failure(ExitCode::refused,
@@ -173,7 +173,7 @@ void require_probe(host::BoardClient& board, const RunArguments& arguments, cons
                             arguments.file, program.moves[program.probes.front().move].line));
 }
 
-/// Checks of the program that need no machine.
+/// Checks the program without a machine.
 void require_program(const std::string& text, const RunArguments& arguments) {
   host::GcodeMachine any;
   any.axes = 3;
@@ -181,7 +181,7 @@ void require_program(const std::string& text, const RunArguments& arguments) {
   host::read_gcode(text, arguments.file, host::PathPoint::Zero(), any);
 }
 
-/// Empty for a dry run without a board: then the limits come from files, or are those of a new board.
+/// Empty for a dry run without a board; the limits then come from files or are a new board's initial ones.
 std::optional<host::BoardClient> board_of(const RunArguments& arguments) {
   if (arguments.dry_run && !arguments.params.empty()) return {};
   try {
@@ -239,7 +239,7 @@ void run(const RunArguments& arguments) {
   catch_signals();
   const bool was_enabled = host::are_enabled(board, mask);
   if (!was_enabled) host::enable_and_wait(board, mask);
-  // From the present references, now that the loops are closed.
+  // Begins at the present references, because the loops are closed now.
   const ProgramOutcome outcome = run_program(board, machine, relative, arguments, text);
   if (!was_enabled) host::disable_and_wait(board, mask);
   tell(outcome, arguments, document);
@@ -266,7 +266,7 @@ void add_run(CLI::App& app) {
   command->add_flag("--pass-stops", arguments->passes_stops, "skip the stops M0 and M1; watch the program");
   add_input(*command, "--params", arguments->params, "with --dry-run: take limits from these files, without a board");
   add_input(*command, "--model", arguments->models,
-            "models of the axes in their order (axis-model/1): with weight and the amplifier's limits, which the "
+            "models of the axes in their order (axis-model/1): they add weight and the amplifier's limits, which the "
             "board's parameters lack");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
@@ -276,7 +276,7 @@ void add_run(CLI::App& app) {
       "  axistool run part.ngc --dry-run --model x.toml y.toml\n"
       "  axistool run part.ngc --capture part.csv\n"
       "  axistool run part.ngc --feed 120 --rapid 25\n"
-      "A dry run says the largest command that each axis needs, and where. Exit code 1: an axis cannot follow.\n"
+      "A dry run prints the largest command that each axis needs, and where. Exit code 1: an axis cannot follow.\n"
       "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G38.2 to G38.5 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30,\n"
       "X Y Z, N, comments; anything else is an error that names the line. The path is exact (G61) unless the program "
       "says G64; G64\n"

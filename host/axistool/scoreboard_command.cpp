@@ -1,4 +1,4 @@
-// axistool scoreboard: what diagnose answers on records whose truth is known.
+// axistool scoreboard: how often diagnose is right on records whose truth is known.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -65,7 +65,7 @@ void print(const host::AnswerSummaries& summaries) {
                alien.count(Outcome::wrong));
 }
 
-/// One line for each way of cutting cases. `worth`: the names of pieces whose whole case has something to find.
+/// Prints one line for each way of cutting cases. `worth`: whether the whole case of a piece has an effect to find.
 void print_pieces(const std::vector<Answer>& answers, const std::map<std::string, bool>& worth) {
   struct Line {
     std::size_t pieces = 0, right = 0, wrong = 0, unexplained = 0, insufficient = 0, all_clear = 0, false_all_clear = 0;
@@ -123,7 +123,7 @@ void print(const char* title, const host::Reliability& reliability) {
   }
 }
 
-/// Whole cases, each without its own effect in the catalogue.
+/// Runs the whole cases, each with its own effect removed from the catalogue.
 void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
   nlohmann::json lines = nlohmann::json::array();
   std::map<Outcome, std::size_t> outcomes;
@@ -160,7 +160,7 @@ void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, boo
   if (!json.empty()) write_json({{"format", "axis-left-out/1"}, {"trials", lines}}, json);
 }
 
-/// Whole cases, each written in other ways: one line a way.
+/// Runs the whole cases in rewritten forms; prints one line for each form.
 void run_rewritten(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
   constexpr double kMostRatio = 1.1;
   nlohmann::json lines = nlohmann::json::array();

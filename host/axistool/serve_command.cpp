@@ -1,4 +1,4 @@
-// axistool serve: the workbench, a page in the browser on the same functions as the commands.
+// axistool serve: the workbench, a page in the browser with the functions of the commands.
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/stat.h>
@@ -28,8 +28,8 @@ struct ServeArguments {
   bool no_browser = false;
 };
 
-/// Opens the page through a private file that redirects to it: all users can see command lines, and the address holds
-/// the token. The destructor removes the file.
+/// Opens the page through a private file that redirects to it, because the address contains the token and all users can
+/// see command lines. The destructor removes the file.
 class BrowserStart {
  public:
   explicit BrowserStart(const std::string& url) {
@@ -68,7 +68,7 @@ void run(const ServeArguments& arguments) {
         arguments.no_browser ? nullptr : std::make_unique<BrowserStart>(server.url());
     while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  release_interrupts();  // a second Ctrl-C waits for nobody
+  release_interrupts();  // a second Ctrl-C ends the program at once
   server.stop();
 }
 

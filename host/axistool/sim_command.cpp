@@ -1,4 +1,4 @@
-// axistool sim: a simulated board, to try everything without one.
+// axistool sim: a simulated board, for use without hardware.
 #include <fmt/format.h>
 
 #include <array>
@@ -64,7 +64,7 @@ host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
                                        : host::read_drive(file));
 }
 
-/// AXIS=TRAVEL: the probe is in contact beyond this travel, seen from 0.
+/// AXIS=TRAVEL: the probe is in contact at this travel and beyond, on the side away from 0.
 hal::pc::SimulatedSurface surface(const std::string& text, std::size_t axes) {
   const std::size_t equals = text.find('=');
   const auto travel = host::parse_number(equals == std::string::npos ? "" : text.substr(equals + 1));
@@ -74,7 +74,7 @@ hal::pc::SimulatedSurface surface(const std::string& text, std::size_t axes) {
   return {host::axis_index(text.substr(0, equals), axes), *travel, *travel > 0.0};
 }
 
-/// The external program replaces the drives; only their data sheets are used.
+/// Replaces the drives by the external program; only their data sheets are used.
 void hand_over(std::vector<host::SimulatedDrive>& drives, const SimArguments& arguments) {
   const auto patience =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(arguments.patience_s));
@@ -161,7 +161,7 @@ void add_sim(CLI::App& app) {
   CLI::Option* usb = command->add_flag(
       "--usb", arguments->usb, "make it a USB device of this computer instead (as root, after modprobe vhci-hcd)");
   usb->excludes(socket);
-  command->add_option("--serial", arguments->serial_number, "its serial number on USB")
+  command->add_option("--serial", arguments->serial_number, "serial number of the board on USB")
       ->capture_default_str()
       ->needs(usb);
   command->add_option("--axes", arguments->axes, "number of axes")
@@ -174,7 +174,7 @@ void add_sim(CLI::App& app) {
   CLI::Option* plant = command->add_option(
       "--plant", arguments->plant,
       "external plant program instead of the drives, in lockstep (axis-plant/1); --x, --y … are then data sheets");
-  command->add_option("--patience", arguments->patience_s, "time-out for its answer, s")
+  command->add_option("--patience", arguments->patience_s, "time-out for the plant's answers, s")
       ->check(CLI::Range(0.01, 600.0))
       ->capture_default_str()
       ->needs(plant);
@@ -186,10 +186,11 @@ void add_sim(CLI::App& app) {
       ->excludes(usb)
       ->excludes(socket);
   command
-      ->add_option("--probe", arguments->surfaces,
-                   "wire a touch probe: it closes from this travel of an axis on, AXIS=mm (m), seen from power-up")
+      ->add_option(
+          "--probe", arguments->surfaces,
+          "connect a touch probe: its contact closes at this travel from the power-up position and beyond, AXIS=mm (m)")
       ->excludes(plant);
-  command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
+  command->add_option("--flash", arguments->flash, "file for the board's parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "seed of the sensors' noise")->capture_default_str();
   command->add_option("--print-drive", arguments->printed,

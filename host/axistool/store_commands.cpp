@@ -1,4 +1,4 @@
-// axistool save, backup, restore: store parameters in the board's flash and in files.
+// axistool save, backup, restore: parameters in the board's flash and in files.
 #include <fmt/format.h>
 
 #include <memory>
@@ -69,8 +69,8 @@ void backup(const StoreArguments& arguments) {
     fmt::print("{} stored values do not fit this firmware's table; the file keeps them as comments\n", foreign.size());
 }
 
-/// The board refuses pitch.on without its table, and a table in other counts, so values are set first, without
-/// pitch.on.
+/// Sets the values without pitch.on, then the tables, because the board refuses pitch.on without a table and a table in
+/// other counts.
 void write_whole(host::BoardClient& board, const firmware::ParameterValues& values,
                  const std::optional<host::PitchTables>& pitch) {
   if (!pitch) return board.write_values(values);
@@ -139,7 +139,7 @@ void add_backup(CLI::App& app) {
 void add_restore(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
   CLI::App* command =
-      app.add_subcommand("restore", "Set a board to exactly the parameters and tables of a backup, and save them");
+      app.add_subcommand("restore", "Set a board's parameters and tables to exactly those of a backup, and save them");
   add_input(*command, "FILE", arguments->file, "file written by backup")->required();
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);

@@ -10,8 +10,8 @@
 
 namespace axistool {
 
-/// During its lifetime, keys arrive without Enter and without an echo. Has no effect if standard input is not a
-/// terminal, or if another program is in its foreground. Ctrl-C and Ctrl-Z remain signals.
+/// During its lifetime, keys arrive without Enter and without echo. Has no effect if standard input is not a terminal,
+/// or if this program is not in its foreground. Ctrl-C and Ctrl-Z remain signals.
 class TypedKeys {
  public:
   TypedKeys() {

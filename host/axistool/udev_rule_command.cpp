@@ -1,4 +1,4 @@
-// axistool udev-rule: who may open a board.
+// axistool udev-rule: prints or installs the rule that lets users open a board.
 #include <fmt/format.h>
 
 #include <memory>

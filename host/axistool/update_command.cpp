@@ -1,4 +1,4 @@
-// axistool update: a new image for a board's program, over its USB cable.
+// axistool update: updates a board's firmware over its USB cable.
 #include <fmt/format.h>
 
 #include <memory>
@@ -21,8 +21,9 @@ struct UpdateArguments : DeviceArguments {
 host::ImageSlotsSeen slots_of(host::BoardClient& board) {
   auto seen = host::read_slots(board);
   if (!seen)
-    throw host::Failure(host::ExitCode::refused,
-                        "this board's firmware cannot be updated over its cable: `axistool flash` writes one that can");
+    throw host::Failure(
+        host::ExitCode::refused,
+        "this board's firmware cannot be updated over its cable: write a firmware that can with `axistool flash`");
   return *seen;
 }
 
@@ -44,7 +45,7 @@ void confirm(host::BoardClient& board, const host::ImageFile& file) {
   if (!runs(slots_of(board), file))
     throw host::Failure(host::ExitCode::device_fault,
                         fmt::format("the new image did not start, and the board has returned to version {}; "
-                                    "`axistool info` shows what its slots hold",
+                                    "`axistool info` shows the contents of its slots",
                                     board.identify().version.data()));
   host::confirm_image(board);
 }
@@ -93,8 +94,8 @@ void update(const UpdateArguments& arguments) {
 
 void add_update(CLI::App& app) {
   auto arguments = std::make_shared<UpdateArguments>();
-  CLI::App* command = app.add_subcommand("update", "Update a board's firmware over the cable that it talks over");
-  add_input(*command, "FILE", arguments->file, "image file (.bin), the same that flash takes")->required();
+  CLI::App* command = app.add_subcommand("update", "Update a board's firmware over its USB cable");
+  add_input(*command, "FILE", arguments->file, "image file (.bin), the same as for flash")->required();
   add_device_options(*command, *arguments);
   command->add_flag("--dry-run", arguments->dry_run, "check image and board, and write nothing");
   command->footer(

@@ -1,4 +1,4 @@
-// Compare, diagnose, improve: meanwhile the axis is disabled.
+// Compare, diagnose, improve; the axis is disabled meanwhile.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -34,8 +34,8 @@ std::vector<std::string> paths(CommissionSession& session, const std::vector<std
 /// A record without the first moments of motion. The initial state of a spring, a gap or bristles is not recorded: on a
 /// machine with two masses the first 0.1 s causes nine tenths of the true model's error.
 Record settled_record(const std::string& path, double resolution) {
-  constexpr double kMoved = 5.0;         // counts: more than an encoder shivers
-  constexpr double kForgotten_s = 0.15;  // a tenth of a second (sim::Drive::memory_s), and what smoothing reaches
+  constexpr double kMoved = 5.0;         // counts: more than the encoder's noise
+  constexpr double kForgotten_s = 0.15;  // 0.1 s (sim::Drive::memory_s) plus the reach of the smoothing
   Record whole = read_record(path);
   const auto moves =
       std::ranges::find_if(whole.x, [&](double x) { return std::abs(x - whole.x.front()) > kMoved * resolution; });

@@ -69,7 +69,7 @@ void commission_axis(BoardClient& board, const CommissionOptions& options, const
           failure.what(), step, kCommissionSteps[step].name);
       try {
         folder.put("stopped_because", failure.what());
-      } catch (const Failure&) {  // what ended it may be the disk
+      } catch (const Failure&) {  // the cause may be the disk
       }
       throw Failure(failure.code, fmt::format("{}: {}", kCommissionSteps[step].name, how));
     }

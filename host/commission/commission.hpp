@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Makes the steps from `from` to `to` (places in kCommissionSteps). At the end the axis is always disabled and the
+/// Makes the steps from `from` to `to` (indices in kCommissionSteps). At the end the axis is always disabled and the
 /// folder holds the results; the message of a failure says how to continue. A failure restores the board's former
 /// parameters, if it had any.
 void commission_axis(BoardClient& board, const CommissionOptions& options, const CommissionTalk& talk,

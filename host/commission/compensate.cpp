@@ -29,7 +29,7 @@ struct Trial {
   double worst() const { return std::max(error->rms_um, repeated->rms_um); }
 };
 
-/// Whether every run of one is better than every run of the other, by more than the repeatability.
+/// Whether every run of `one` is better than every run of `other` by more than the repeatability.
 bool is_better(const Trial& one, const Trial& other) {
   if (!one.is_whole() || !other.is_whole()) return one.is_whole();
   return other.best() - one.worst() > std::max(one.spread(), other.spread());
@@ -69,7 +69,7 @@ class Comparison {
     if (trial.error) trial.repeated = tried(trial, trial.again);
   }
 
-  /// Empty if the axis stopped with a fault; then the old parameters are kept.
+  /// Runs the trial; empty if the axis stopped with a fault. The old parameters are then kept.
   std::optional<FollowingError> tried(Trial& trial, const std::string& file) {
     try {
       return following_error(session_.record(judging_jogs(session_, file)), session_.options().sheet.data);

@@ -1,4 +1,4 @@
-// The first controller: pole placement on the identified drive, of modest bandwidth.
+// The first controller: pole placement on the identified drive, with modest bandwidth.
 #include <fmt/format.h>
 
 #include "host/commission/steps.hpp"
@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Figures of a stop with these parameters. A brake's effort is unknown.
+/// Properties for stopping with these parameters. A brake's torque or force is unknown.
 StoppingFigures figures_of(const CommissionSession& session, const sim::DriveDescription& model,
                            const firmware::AxisValues& values) {
   const ReferenceLimits limits = session.limits();

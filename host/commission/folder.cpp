@@ -88,7 +88,7 @@ void CommissionFolder::begin_at(std::size_t step) {
     document_["steps"][step] = {
         {"name", kCommissionSteps[step].name}, {"done", false}, {"files", nlohmann::json::array()}};
   document_.erase("stopped_because");
-  document_["page"] = nullptr;  // from another run, or from the folder of which this is a copy, until it is written
+  document_["page"] = nullptr;  // until it is written; a page may be left from another run
   keep();
 }
 

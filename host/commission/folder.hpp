@@ -17,7 +17,7 @@ struct CommissionStepText {
   std::string_view name, does;
 };
 
-/// In their order.
+/// The steps in their order.
 inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
     {"look", "rights and faults, noise at standstill, direction and breakaway by a slow voltage ramp"},
     {"identify", "voltage steps in open loop: inertia, viscous and Coulomb friction"},
@@ -46,12 +46,12 @@ class CommissionFolder {
 
   std::string path(std::string_view file) const;
   bool has(std::string_view file) const;
-  /// Throws Failure(usage) naming the step that writes it.
+  /// Path of a file; throws Failure(usage) naming the step that writes it if it is missing.
   std::string require(std::string_view file, std::string_view step) const;
 
   bool is_done(std::size_t step) const;
   std::optional<std::size_t> first_undone() const;
-  void begin_at(std::size_t step);  ///< this step and all further ones are to be done again, including the page
+  void begin_at(std::size_t step);  ///< marks this and all later steps, including the page, as not done
   /// `said`: a sentence for the page.
   void finish(std::size_t step, const std::vector<std::string>& files, const std::string& said);
 

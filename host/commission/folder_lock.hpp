@@ -1,4 +1,4 @@
-// A folder for one commissioning at a time.
+// Locks a folder, so that only one commissioning uses it at a time.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Following error of a controlled axis, by its own encoder.
+// Following error of a controlled axis, measured by its own encoder.
 #pragma once
 
 #include <vector>
@@ -17,12 +17,12 @@ struct MovingRows {
 };
 MovingRows moving_rows(const Record& record);
 
-/// Reference minus encoder, µm, of the moving rows; an encoder's step is taken at its middle. Throws Failure(bad_input)
-/// for a record without a reference or without motion.
+/// Reference minus encoder, µm, of the moving rows; an encoder count is taken at the middle of its step. Throws
+/// Failure(bad_input) for a record without a reference or without motion.
 std::vector<double> following_um(const Record& record, const sim::DataSheet& data);
 FollowingError following_error(const Record& record, const sim::DataSheet& data);
 
-/// The non-repeatable part of a motion made twice, µm RMS of one of them, which no parameter can reduce.
+/// The non-repeatable part of the following error of one motion, µm RMS, from two runs; no parameter can reduce it.
 double following_floor_um(const Record& once, const Record& again);
 
 }  // namespace host

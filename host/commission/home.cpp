@@ -13,7 +13,7 @@ namespace host {
 
 namespace {
 
-constexpr double kSearchOfBox = 0.45;  ///< of its travel: towards the switch, with room to stop
+constexpr double kSearchOfBox = 0.45;  ///< search towards the switch relative to the box's travel, with room to stop
 constexpr double kSpeedOfBox = 0.15;
 
 }  // namespace
@@ -43,7 +43,7 @@ std::vector<CompensationParameter> CommissionSession::homing_parameters() const 
 void CommissionSession::find_home() {
   const auto begin = board_.now();
   enable();
-  go_back();  // the longest way of a search is half the box's
+  go_back();  // a search may take up to half of the box's travel
   std::int64_t last = counts();
   home_and_wait(board_, options_.axis, [&] {
     const auto status = board_.status().axis.at(options_.axis);
@@ -52,7 +52,7 @@ void CommissionSession::find_home() {
   });
   spend(begin);
   if (talk_.stop()) throw Failure(ExitCode::refused, "interrupted");
-  origin_ += counts() - last;  // the same place, counted from home
+  origin_ += counts() - last;  // the same position, counted from home
 }
 
 CommissionStepResult home_axis(CommissionSession& session) {

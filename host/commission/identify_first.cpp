@@ -1,4 +1,4 @@
-// Voltage steps in open loop, and inertia and friction from them.
+// Voltage steps in open loop; identifies inertia and friction from them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ bool level_friction(CommissionSession& session, sim::DriveDescription& model) {
   if (std::ranges::none_of(doubts, [](const Doubt& doubt) { return doubt.effect == "coulomb" && doubt.refuses; }))
     return false;
   const nlohmann::json broke = session.folder().read_json("look.json").at("pulse").at("breakaway_V");
-  constexpr double kSliding = 0.8;  // of what breaks away
+  constexpr double kSliding = 0.8;  // sliding friction relative to breakaway
   const double per_volt = kSliding * model.data.effort_per_volt();
   sim::EffectEntry& coulomb = *model.find("coulomb");
   coulomb = {"coulomb",

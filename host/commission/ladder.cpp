@@ -18,7 +18,7 @@ namespace host {
 
 namespace {
 
-constexpr std::size_t kSpeeds = 6;  // of one record: a train on the board holds 14 levels
+constexpr std::size_t kSpeeds = 6;  // speeds of one record: a train on the board holds 14 levels
 
 /// Equally spaced on a logarithmic scale.
 std::vector<double> ladder_speeds(double lowest, double highest, std::size_t count) {
@@ -34,11 +34,11 @@ CommissionStepResult climb_ladder(CommissionSession& session) {
   session.ask("Ladder: jogs at twelve speeds in both directions.");
   session.download(session.with_file(session.folder().require("first-params.toml", "control")));
   const double highest = std::min(session.steady_speed(), session.top_speed());
-  // Below 50 counts per second an encoder shows little; a wide ladder covers a few decades.
+  // Below 50 counts per second the encoder's resolution is too low; a wide ladder covers a few decades.
   const double lowest = std::max(highest / 300.0, 50.0 * session.options().sheet.data.encoder_resolution);
   const std::vector<double> all = ladder_speeds(lowest, highest, 2 * kSpeeds);
   const auto middle = all.begin() + kSpeeds;
-  constexpr double kSlow_s = 1.5, kFast_s = 1.0;  // a jog: friction is read off from 0.3 s after its beginning
+  constexpr double kSlow_s = 1.5, kFast_s = 1.0;  // duration of a jog; its first 0.3 s are ignored
   session.record(
       {"ladder-slow.csv", "ladder", {{all.begin(), middle}, {{"hold", kSlow_s}}}, "", 2.2 * kSpeeds * kSlow_s});
   session.record(

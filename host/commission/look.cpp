@@ -23,7 +23,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// What the sensors show at rest, with the drive disabled.
+/// Noise of the sensors at rest, with the drive disabled.
 nlohmann::json look_at_rest(CommissionSession& session) {
   CaptureSettings settings;
   settings.axis = session.options().axis;
@@ -47,7 +47,7 @@ struct Pulse {
 
 Pulse pulse_of(const Record& record, double resolution) {
   Pulse pulse;
-  double farthest = record.x.front(), last_sign = 0.0;  // against the command, since its sign changed
+  double farthest = record.x.front(), last_sign = 0.0;  // motion against the command since its sign changed
   for (std::size_t k = 0; k + 1 < record.size(); ++k) {
     const double u = record.u_V[k], sign = u > 0.0 ? 1.0 : u < 0.0 ? -1.0 : 0.0;
     if (sign != last_sign || sign * (record.x[k] - farthest) < 0.0) farthest = record.x[k];
@@ -55,7 +55,7 @@ Pulse pulse_of(const Record& record, double resolution) {
     pulse.with_encoder += u * (record.x[k + 1] - record.x[k]);
     if (record.has_speed()) pulse.with_tachometer += u * record.w[k + 1];
     double& broke = sign > 0.0 ? pulse.positive_V : pulse.negative_V;
-    constexpr double kMoved = 5.0;  // counts: more than an encoder shivers
+    constexpr double kMoved = 5.0;  // counts: more than the encoder's noise
     if (sign != 0.0 && broke == 0.0 && sign * (record.x[k + 1] - farthest) > kMoved * resolution) broke = std::abs(u);
   }
   return pulse;
@@ -91,7 +91,7 @@ CommissionStepResult look(CommissionSession& session) {
   session.folder().write_json("look.json", seen);
   require_right_feedback(pulse, record);
   const double breakaway = std::max(pulse.positive_V, pulse.negative_V);
-  constexpr double kRoom = 0.7;  // of the voltage: the part beyond friction must show as acceleration
+  constexpr double kRoom = 0.7;  // of the voltage; the rest beyond friction must give visible acceleration
   if (breakaway > kRoom * session.options().box.volts)
     throw Failure(ExitCode::refused, fmt::format("the axis breaks away at {:.2g} V, and the box allows {:.2g} V: too "
                                                  "little acceleration remains to identify the inertia; allow {:.2g} V",

@@ -24,12 +24,13 @@ AxisTask task_of(const CommissionedAxis& axis) {
   return task;
 }
 
-/// Following error of the set that commissioning left on the board, µm RMS.
+/// Following error with the parameters that commissioning left on the board, µm RMS.
 double own_error_um(const CommissionFolder& folder) {
   const nlohmann::json errors = folder.read_json("errors.json");
   for (const nlohmann::json& set : errors.at("sets"))
     if (set.at("name") == errors.at("kept")) return set.at("rms_um");
-  throw Failure(ExitCode::bad_input, folder.path("errors.json") + ": does not hold the set that it names as kept");
+  throw Failure(ExitCode::bad_input,
+                folder.path("errors.json") + ": lacks the set of parameters that it names as kept");
 }
 
 std::string poles_of(const LoopSet& loops) {

@@ -15,9 +15,9 @@ struct CommissionedAxis {
   CommissionFolder* folder;
 };
 
-/// Designs one loop for all axes from their improved models and measured responses, as fast as the slowest allows at
-/// the margin asked for, downloads it, and makes each axis's jogs again. Makes matched-params.toml and matched.csv in
-/// each folder. Returns the design (axis-machine-design/1) with "following_error_um" of each axis: "own" as
+/// Designs one loop for all axes from their improved models and measured responses, as fast as the slowest axis allows
+/// at the requested margin, downloads it, and makes each axis's jogs again. Makes matched-params.toml and matched.csv
+/// in each folder. Returns the design (axis-machine-design/1) with "following_error_um" of each axis: "own" as
 /// commissioned, "matched". A failure restores the board's parameters; the axes are disabled at the end.
 nlohmann::json match_loops(BoardClient& board, const std::vector<CommissionedAxis>& axes, const CommissionTalk& talk);
 

@@ -45,7 +45,7 @@ struct Page {
     return kinds;
   }
 
-  /// An effect, or the group that these motions cannot separate from it.
+  /// Title of an effect, or of the group that these motions cannot separate from it.
   std::string alike(const std::string& kind) const {
     if (!state.at("decided").is_array())
       for (const auto& alternatives : state.at("verdict").at("alternatives")) {
@@ -140,7 +140,8 @@ BarChart errors_chart(const Page& page) {
   chart.caption =
       "The same jogs, twice with each set of parameters; ±: difference between the two RMS values. Not repeatable: RMS "
       "of "
-      "what differs between equal runs, which no parameter can reduce. The base model has only inertia and friction.";
+      "of the difference between equal runs, which no parameter can reduce. The base model has only inertia and "
+      "friction.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
@@ -201,7 +202,7 @@ Table steps_table(const Page& page) {
   for (const auto& step : page.state["steps"]) {
     if (!step.value("done", false)) continue;
     std::string said = step.value("said", "");
-    // It is at the top, or on the diagnosis's own page.
+    // The explanation is at the top, or on the page of the diagnosis.
     if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
       said.erase(at, explanation.size());
     if (step["name"] == "compensate" && page.is_new() && page.has_after()) said = "The figures are above.";

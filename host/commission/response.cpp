@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kFirst_s = 70.0, kAgain_s = 46.0;  // of motion: three bands and a resonance; two bands
 constexpr std::size_t kRealisations = 3;
-constexpr double kGently = 0.25;  // of the amplitude
+constexpr double kGently = 0.25;  // reduced amplitude, relative to the usual one
 constexpr double kKept = 0.9;     // part of the requested margin that the second measurement must show
-constexpr double kWorth = 1.05;   // factor by which the bandwidth must rise, or nothing changes
+constexpr double kWorth = 1.05;   // smallest factor of bandwidth for which the loop is changed
 constexpr const char* kMeasured = "response.json";
 
 nlohmann::json filters_json(const ControlFilterChoice& filters) {
@@ -82,7 +82,7 @@ class ResponseStep {
     files_.emplace_back(file);
   }
 
-  /// `share`: of the usual amplitude.
+  /// `share`: amplitude relative to the usual one.
   AxisResponse measure(double time_s, const std::string& name, double share) {
     BoardClient& board = session_.board();
     const std::uint8_t axis = session_.options().axis;
@@ -157,7 +157,7 @@ class ResponseStep {
            axis.margins->modulus->ci95[1] >= kKept * session_.options().modulus;
   }
 
-  /// An oscillating loop is rejected.
+  /// Measures with the new loop; rejects an oscillating loop.
   AxisResponse try_loop() {
     try {
       return measure(kAgain_s, "response-after", share_);

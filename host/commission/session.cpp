@@ -25,7 +25,7 @@ namespace host {
 namespace {
 
 constexpr double kRideMargin =
-    1.3;  // of a commanded speed to the box's, which the board enforces (excite asks for 1.25)
+    1.3;  // box's speed, which the board enforces, relative to a commanded speed (excite requires 1.25)
 
 /// An axis without current coasts for a moment, and the board enables only an axis at rest.
 constexpr std::chrono::milliseconds kToRest{500};
@@ -41,12 +41,12 @@ CommissionSession::CommissionSession(BoardClient& board, CommissionOptions optio
 std::int64_t CommissionSession::counts() { return board_.status().axis.at(options_.axis).counts(); }
 
 double CommissionSession::steady_speed() const {
-  // A second of it, and the ways of its beginning and end, have to fit the travel.
+  // A second of motion, with its acceleration and deceleration, must fit the travel.
   return std::min(options_.box.speed / kRideMargin, 0.6 * options_.box.travel);
 }
 
 double CommissionSession::top_speed() const {
-  // A stop may take a quarter of the travel (excitation_design.cpp), and something is left for its jerk.
+  // A stop may take a quarter of the travel (excitation_design.cpp), with a reserve for its jerk.
   const double acceleration = folder_.document().at("limits").at("acceleration");
   return std::min(options_.box.speed / kRideMargin, 0.8 * std::sqrt(acceleration * options_.box.travel / 2.0));
 }
@@ -100,7 +100,8 @@ ExcitationLimits CommissionSession::room_for(double time_s, const std::string& w
                                                  what, time_s, options_.box.time_s, options_.box.time_s - motion_s_));
   if (values.axis(options_.axis).get<"drive.fitted">()) {
     enable();
-    if (folder_.document().value("homed", false) && !is_homed()) find_home();  // a reset forgets it, and some faults
+    if (folder_.document().value("homed", false) && !is_homed())
+      find_home();  // a reset and some faults clear the homing
     go_back();
   }
   const double away = static_cast<double>(std::abs(counts() - origin_)) * options_.sheet.data.encoder_resolution;
@@ -260,11 +261,11 @@ void CommissionSession::disable() {
 void CommissionSession::leave_standing() noexcept {
   try {
     board_.stop_excitation();
-  } catch (const std::exception&) {  // none ran, or the board has gone
+  } catch (const std::exception&) {  // no motion ran, or the board is gone
   }
   try {
     disable();
-  } catch (const std::exception&) {  // gone: its own watch on the host stops the axis
+  } catch (const std::exception&) {  // the board is gone: its heartbeat time-out stops the axis
   }
 }
 

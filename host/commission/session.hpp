@@ -1,4 +1,4 @@
-// Shared by the steps of a commissioning: board, box, folder, user, and the motions.
+// Common to the steps of a commissioning: board, box, folder, dialogue with the user, and motions.
 #pragma once
 
 #include <functional>
@@ -23,37 +23,37 @@ namespace host {
 /// Homing mode of an axis with a switch or an index pulse.
 struct CommissionHoming {
   firmware::HomingMode mode = firmware::HomingMode::none;
-  double position = 0.0;     ///< of the place that is found, mm (m)
+  double position = 0.0;     ///< position of the home point, mm (m)
   bool is_backward = false;  ///< the switch is on the negative side
 };
 
 struct CommissionOptions {
   std::uint8_t axis = 0;
   std::string axis_name;        ///< x, y, …
-  sim::DriveDescription sheet;  ///< data sheet; its effects, if any, give only the form of the base
+  sim::DriveDescription sheet;  ///< data sheet; its effects, if any, define only the form of the base model
   /// Travel on both sides of the axis's initial position; volts in open loop, and for planning motions in closed loop;
   /// time of all motion together.
   ExcitationLimits box;
-  double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
-  double modulus = 0.5;        ///< margin up to which the measured response lets the bandwidth rise
+  double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, because delays are not known yet
+  double modulus = 0.5;        ///< modulus margin to keep when the bandwidth is raised on the measured response
   std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
   std::optional<double> overtravel = {};        ///< free beyond the box up to the hard stops, mm (m); empty: unknown
-  bool save = false;                            ///< the better set, in the board's flash
+  bool save = false;                            ///< save the better parameters in the board's flash
 };
 
-/// The user's side.
+/// Dialogue with the user.
 struct CommissionTalk {
   std::function<bool(const std::string&)> consents = [](const std::string&) { return true; };
   std::function<bool()> stop = [] { return false; };
   std::function<void(const std::string&)> tell = [](const std::string&) {};
-  /// Before and after work during which the axis is disabled and `stop` is not checked.
+  /// Called before (true) and after (false) work during which the axis is disabled and `stop` is not checked.
   std::function<void(bool)> computes = [](bool) {};
 };
 
 /// A motion and the file of its record.
 struct CommissionRun {
   std::string file;
-  std::string kind;  ///< of `axistool excite`
+  std::string kind;  ///< kind of `axistool excite`
   ExcitationNumbers numbers;
   std::string loop;  ///< "", "reference", "output"
   double time_s = 0.0;
@@ -67,7 +67,7 @@ struct CommissionLoop {
 
 /// Result of the diagnosis for the following steps of the same command.
 struct CommissionFinding {
-  Measurements measured;  ///< the diagnosis refers to it
+  Measurements measured;  ///< the diagnosis refers to these data
   Diagnosis diagnosis;
 };
 
@@ -86,20 +86,20 @@ class CommissionSession {
   void ask(const std::string& what);
 
   /// Makes the motion within the rest of the box, and writes its record even after a failure. An axis in closed loop
-  /// first returns to its initial position. Throws Failure(refused) for a motion that did not end by itself, saying why
-  /// and what to do.
+  /// first returns to its initial position. Throws Failure(refused), with cause and remedy, for a motion that did not
+  /// end by itself.
   Record record(const CommissionRun& run);
 
   /// The same for a planned run.
   Record record_plan(const RunPlan& run, const std::string& file);
 
-  /// Sets the data sheet's scales and control rate on an unfitted axis. Throws Failure(refused) where a fitted axis has
+  /// Sets the data sheet's scales and control rate on an unfitted axis. Throws Failure(refused) if a fitted axis has
   /// other scales than the data sheet.
   void give_scales();
 
-  /// The board's parameters with those of a file.
+  /// The board's parameters, replaced by those of a file as far as it contains them.
   firmware::ParameterValues with_file(const std::string& path);
-  /// Downloads a set, unless the board has it, with the axis disabled.
+  /// Disables the axis and downloads a set of parameters, unless the board already has it.
   void download(const firmware::ParameterValues& values);
   /// Writes the file of a controller for `model`, and returns its parameters on this board, with the planned limits.
   firmware::ParameterValues design(const sim::DriveDescription& model, const CommissionLoop& loop,
@@ -107,8 +107,8 @@ class CommissionSession {
   /// A controller of modest bandwidth, because delays and resonances are not known yet.
   CommissionLoop first_loop(const sim::DriveDescription& model) const;
   DesignOptions first_options() const;
-  /// Equal for all sets of parameters, so that motions are the same: from `model` and the box, and kept in the folder.
-  /// Throws Failure(refused) if friction takes all of the box's volts.
+  /// Plans limits of motion from `model` and the box and stores them in the folder. They are equal for all sets of
+  /// parameters, so that the motions are the same. Throws Failure(refused) if friction needs all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);
   firmware::ParameterValues with_planned_limits(firmware::ParameterValues values) const;
 
@@ -153,11 +153,11 @@ class CommissionSession {
   CommissionOptions options_;
   CommissionTalk talk_;
   CommissionFolder& folder_;
-  std::int64_t origin_;  ///< counts when the command began
+  std::int64_t origin_;  ///< position in counts when the command began
   double motion_s_ = 0.0;
 };
 
-/// A computation during which the axis is disabled and Ctrl-C ends the program; for the lifetime of this object.
+/// Marks a computation, for the lifetime of this object: the axis is disabled, and Ctrl-C ends the program.
 class Computing {
  public:
   explicit Computing(const CommissionSession& session) : talk_(session.talk()) { talk_.computes(true); }

@@ -14,8 +14,8 @@ struct CommissionStepResult {
   std::string said;                ///< result in one or two sentences
 };
 
-/// Makes before-params.toml (the board as it was), standstill.csv, pulse.csv, look.json. Throws Failure(refused) where
-/// feedback and motor disagree.
+/// Makes before-params.toml (the board as it was), standstill.csv, pulse.csv, look.json. Throws Failure(refused) if
+/// feedback and motor have opposite signs.
 CommissionStepResult look(CommissionSession& session);
 
 /// Makes steps.csv, identified.toml, identification.json.
@@ -24,7 +24,7 @@ CommissionStepResult identify_first(CommissionSession& session);
 /// Makes first-params.toml, and downloads it.
 CommissionStepResult control_first(CommissionSession& session);
 
-/// If homing is possible: makes steps.csv again, counted from home; so are all later motions.
+/// If homing is possible: homes the axis and makes steps.csv again. From now on positions count from home.
 CommissionStepResult home_axis(CommissionSession& session);
 
 /// Makes ladder-slow.csv, ladder-fast.csv.
@@ -75,7 +75,7 @@ inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-aga
 /// All training and validation records, checked by the gate, including the runs that separate explanations.
 Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);
 
-/// Steps of voltage in open loop: steps.csv.
+/// Makes voltage steps in open loop: steps.csv.
 Record record_steps(CommissionSession& session);
 
 /// The motion for comparing controllers; always the same.

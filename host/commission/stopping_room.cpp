@@ -38,7 +38,7 @@ std::string check_stopping_room(const StoppingFigures& axis, double speed, std::
   const std::string said =
       fmt::format("From {:.4g} {}/s it stops within {:.3g} {} along its ramp; without current it {}.", speed, unit,
                   room.ramp, unit, coasts);
-  if (!overtravel) return said + " Make sure that so much is free beyond the box (--overtravel checks it).";
+  if (!overtravel) return said + " Make sure that this distance is free beyond the box (--overtravel checks it).";
   if (std::max(room.ramp, room.dropped) <= *overtravel)
     return said + fmt::format(" Beyond the box {:g} {} are free.", *overtravel, unit);
   const double fastest = fastest_within(axis, *overtravel);

@@ -1,4 +1,4 @@
-// Motions besides steps and ladder: for training and for validation; one of the latter is made twice.
+// Further motions for training and validation; one validation motion is made twice.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace host {
 
 CommissionRun judging_jogs(const CommissionSession& session, const std::string& file) {
-  constexpr double kHold_s = 0.8;  // or less, where the box ends
+  constexpr double kHold_s = 0.8;  // or less, if the box ends first
   std::vector<double> speeds;
   for (const double share : {0.01, 0.05, 0.18, 0.5, 0.95}) speeds.push_back(share * session.top_speed());
   return {file, "ladder", {speeds, {{"hold", kHold_s}}}, "", 2.5 * kHold_s * static_cast<double>(speeds.size())};
@@ -20,13 +20,13 @@ CommissionStepResult record_validation(CommissionSession& session) {
   const ExcitationLimits& box = session.options().box;
   const double top = std::min(session.steady_speed(), session.top_speed()),
                count = session.options().sheet.data.encoder_resolution;
-  // Enough to move, too little to reverse the jog.
+  // Large enough to move the axis, too small to reverse the jog.
   session.record({"sweep.csv",
                   "multisine",
                   {{}, {{"amplitude", 0.2 * box.volts}, {"from", 2.0}, {"to", 80.0}, {"ride", 0.2 * top}}},
                   "output",
                   8.0});
-  // A triangle's reference holds 1000 counts, and turns as sharply as the board lets a path turn.
+  // A triangle of the reference holds 1000 counts; its corners are as sharp as the board allows for a path.
   const double stroke = std::min(std::max(box.travel / 100.0, 100.0 * count), 900.0 * count);
   const double sharpest = 3.0 * session.folder().document().at("limits").at("acceleration").get<double>() *
                           session.options().sheet.data.sample_period_s;

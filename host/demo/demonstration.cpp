@@ -53,7 +53,7 @@ Demonstration demonstrate(const DemonstrationInput& input) {
   }
 
   Demonstration shown{std::move(details), std::move(figures)};
-  shown.report.section("All figures", "What was found beside what it should be.");
+  shown.report.section("All figures", "Results and their reference values.");
   shown.report.add(figures_table(shown.figures));
   const auto agreeing = std::ranges::count_if(shown.figures, &DemoFigure::agrees);
   Verdict verdict;

@@ -12,7 +12,7 @@ namespace host {
 
 struct DemonstrationInput {
   std::string drive_case;                  ///< folder of the shipped record (see show_shipped_drive)
-  std::optional<std::string> emps_folder;  ///< of the public benchmark; empty: left out
+  std::optional<std::string> emps_folder;  ///< folder of the public benchmark; empty: left out
 };
 
 struct Demonstration {

@@ -46,7 +46,7 @@ DemoPart show_emps(const std::string& folder, Report& report) {
       identify_drive(MeasurementGate(drive).admit({seen.record}), drive, IdentificationMethod::unbiased_ls);
   const double forward = found.estimate.positive->value, backward = found.estimate.negative->value;
 
-  // Published: Janot, Gautier, Brunot 2019, inverse model with offset; the ranges leave room for another filter.
+  // Published: Janot, Gautier, Brunot 2019, inverse model with offset; the ranges allow for a different filter.
   std::vector<DemoFigure> figures = {
       {"EMPS mass M, kg", found.estimate.inertia.value, 95.0, 95.2, "published 95.1089"},
       {"EMPS viscous Fv, N s/m", found.estimate.viscous.value, 202.7, 203.9, "published 203.5034"},
@@ -57,13 +57,14 @@ DemoPart show_emps(const std::string& folder, Report& report) {
        "published 5.9824"},
   };
 
-  report.section("A real drive: the EMPS benchmark",
-                 "A ball-screw carriage measured by others, with an encoder only. Model: mass, viscous and Coulomb "
-                 "friction, offset. The force that the model needs for the measured motion against the motor's force.");
+  report.section(
+      "A real drive: the EMPS benchmark",
+      "A ball-screw carriage measured by others, with an encoder only. Model: mass, viscous and Coulomb "
+      "friction, offset. Compares the force that the model needs for the measured motion with the motor's force.");
   const Motion motion = prepare_motion(seen.record, drive.data, {});
   TimePlot plot = model_plot("force", "N", motion.t_s, motion.effort, inverse_effort(sim::Drive(found.model), motion));
   plot.title = "Measured and modelled force (DATA_EMPS)";
-  plot.caption = "What is left at the reversals and in the strokes is what this simple model lacks.";
+  plot.caption = "The difference at the reversals and in the strokes is the error of this simple model.";
   report.add(std::move(plot));
   return {fmt::format(
               "The real EMPS drive: mass {} kg (published 95.11), force error {} % (published 4.08), and {} % on "

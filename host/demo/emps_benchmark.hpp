@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// `folder` holds DATA_EMPS.mat and DATA_EMPS_PULSES.mat of "Data set and reference models of EMPS" (Janot, Gautier,
-/// Brunot 2019). Imports both, identifies from the first, checks on the second. Throws Failure(bad_input) where a file
+/// `folder` contains DATA_EMPS.mat and DATA_EMPS_PULSES.mat of "Data set and reference models of EMPS" (Janot, Gautier,
+/// Brunot 2019). Imports both, identifies from the first and checks on the second. Throws Failure(bad_input) if a file
 /// is missing.
 DemoPart show_emps(const std::string& folder, Report& report);
 

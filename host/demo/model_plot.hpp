@@ -12,7 +12,7 @@ namespace host {
 TimePlot model_plot(const std::string& quantity, const std::string& unit, const std::vector<double>& t_s,
                     const std::vector<double>& measured, const std::vector<double>& modelled);
 
-/// Root mean square of measured minus modelled, where there is a model.
+/// Root mean square of measured minus modelled, over the values with a model.
 double rms_difference(const std::vector<double>& measured, const std::vector<double>& modelled);
 
 }  // namespace host

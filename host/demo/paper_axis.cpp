@@ -26,7 +26,7 @@ void add_step_methods(const Record& steps, const sim::DriveDescription& machine,
   const FrictionLaw truth = friction_law(machine);
   Table table;
   table.title = "Least squares at Ku = 15";
-  table.caption = "Simple least squares leaves friction out and pays with B; the paper's unbiased one estimates it.";
+  table.caption = "Simple least squares ignores Coulomb friction, which biases B; the paper's method estimates both.";
   table.headings = {"method", "J, kg m²", "B, Nm s/rad", "Coulomb +, Nm", "Coulomb -, Nm", "torque error, %"};
   for (const auto method :
        {IdentificationMethod::simple_ls, IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
@@ -49,7 +49,7 @@ void add_jog_plot(const Record& jogs, const AxisDesign& design, const sim::Drive
   std::vector<double> torque = observe_disturbance(jogs, design, machine.data);
   for (double& d : torque) d *= machine.data.effort_per_volt();
   TimePlot plot;
-  plot.title = "Jogs at the paper's eleven speeds, and the disturbance that the Kalman filter sees (as Fig. 9)";
+  plot.title = "Jogs at the paper's eleven speeds, and the disturbance estimated by the Kalman filter (as Fig. 9)";
   plot.caption =
       "Each plateau of the lower trace is one friction torque: larger at the slowest speeds (static friction).";
   plot.t_s = jogs.t_s;
@@ -62,7 +62,7 @@ ScatterSeries curve_of(const FrictionLaw& law, const char* name, SeriesRole role
   ScatterSeries curve{name, role, SeriesStyle::line, {}, {}, {}, {}};
   for (int step = -200; step <= 200; ++step) {
     const double part = step / 200.0;
-    const double speed = top_speed * part * std::abs(part);  // closer together where the curve bends
+    const double speed = top_speed * part * std::abs(part);  // denser at low speeds, where the curve bends
     curve.x.push_back(speed);
     curve.y.push_back(step == 0 ? std::nan("") : law.effort(speed));
   }
@@ -83,7 +83,7 @@ void add_friction_plot(const FrictionIdentification& found, const sim::DriveDesc
   ScatterPlot plot;
   plot.title = "Friction curve (as Fig. 10)";
   plot.caption =
-      "Points: mean torque at constant speed, with 95 % bars. Line: the fitted curve, over the plant's true one.";
+      "Points: mean torque at constant speed, with 95 % bars. Line: the fitted curve, over the plant's true curve.";
   plot.x = {"speed", "rad/s"};
   plot.y = {"friction torque", "Nm"};
   plot.series = {curve_of(friction_law(machine), "true (Table 1)", SeriesRole::other, top_speed),
@@ -93,7 +93,7 @@ void add_friction_plot(const FrictionIdentification& found, const sim::DriveDesc
 
 double worst_curve_error(const FrictionLaw& found, const FrictionLaw& truth) {
   double worst = 0.0;
-  constexpr double kSlowest_rad_s = 0.6, kFastest_rad_s = 63.0;  // the range that the paper's jogs cover
+  constexpr double kSlowest_rad_s = 0.6, kFastest_rad_s = 63.0;  // range of the paper's jogs
   constexpr int kSpeeds = 240;
   for (int k = 0; k <= kSpeeds; ++k) {
     const double v = kSlowest_rad_s * std::pow(kFastest_rad_s / kSlowest_rad_s, static_cast<double>(k) / kSpeeds);
@@ -116,7 +116,7 @@ void add_step_figures(const Identification& found, const sim::DriveDescription& 
   figures.push_back(within_fraction(axis + " Coulomb backward, Nm", e.negative->value, -truth.negative.coulomb, 0.12));
 }
 
-/// The same jogs on a machine whose tachometer reads too much.
+/// The same jogs on a machine whose tachometer reads too high.
 void add_tachometer_figures(const sim::DriveDescription& machine, const sim::DriveDescription& believed,
                             const AxisDesign& design, const std::string& axis, std::vector<DemoFigure>& figures) {
   sim::DriveDescription misread = machine;
@@ -150,7 +150,7 @@ PaperAxisOutcome show_paper_axis(std::string_view axis, Report& report) {
   PaperAxisOutcome outcome;
   const FrictionLaw truth = friction_law(machine);
   add_step_figures(unbiased, machine, name, outcome.part.figures);
-  // Between 0.6 and 63 rad/s; the y axis has the noisier torque.
+  // Between 0.6 and 63 rad/s; the torque of the y axis is noisier.
   outcome.part.figures.push_back(at_most(name + " friction curve, worst error, Nm",
                                          worst_curve_error(friction.fit.law, truth), axis == "x" ? 0.015 : 0.03));
   outcome.part.figures.push_back(
@@ -159,13 +159,13 @@ PaperAxisOutcome show_paper_axis(std::string_view axis, Report& report) {
 
   report.section(
       fmt::format("Axis {}: open-loop steps", name),
-      "Simulated plant that obeys Table 1 of the paper: friction with true sticking, quantised D/A converter "
+      "Simulated plant with the values of Table 1 of the paper: friction with true sticking, quantised D/A converter "
       "and encoder, noisy tachometer.");
   const std::vector<double> modelled = free_run_speed(friction.model, steps);
   TimePlot plot = model_plot("speed", "rad/s", steps.t_s, steps.w, modelled);
   plot.title = "Measured and modelled speed (as Fig. 8)";
   plot.caption = fmt::format(
-      "The identified model is given the commands alone, from rest to the end without restart. Difference {} rad/s "
+      "The identified model gets only the commands, from rest to the end without restart. Difference {} rad/s "
       "rms; "
       "the tachometer's own noise is {} rad/s.",
       format_value(rms_difference(steps.w, modelled), 2),

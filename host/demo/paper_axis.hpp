@@ -11,7 +11,7 @@ namespace host {
 
 struct PaperAxisOutcome {
   DemoPart part;
-  sim::DriveDescription identified;  ///< inertia and friction curve as found, what the controller is designed from
+  sim::DriveDescription identified;  ///< identified inertia and friction curve, for the design of the controller
 };
 
 /// Axis "x" or "y" of Table 1. Open-loop steps at Ku = 15 by all methods of least squares, jogs at the paper's eleven

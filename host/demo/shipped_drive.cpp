@@ -81,12 +81,12 @@ DemoPart show_shipped_drive(const std::string& folder, Report& report) {
   TimePlot plot = model_plot("speed", "rad/s", unseen.t_s, unseen.w, modelled);
   plot.title = "Measured and modelled speed on the unseen record (as Fig. 8)";
   plot.caption = fmt::format(
-      "The model sees the command alone and restarts from the measured state every {:g} ms. Difference {} rad/s rms; "
+      "The model gets only the command and restarts from the measured state every {:g} ms. Difference {} rad/s rms; "
       "the tachometer's own noise is {} rad/s.",
       1e3 * kWindow_s, format_value(speed_error, 2), format_value(speed_noise, 2));
   report.add(std::move(plot));
   return {
-      fmt::format("A drive that this code did not make: inertia found within {} %; on an unseen motion the torque is "
+      fmt::format("A drive from an independent simulator: inertia found within {} %; on an unseen motion the torque is "
                   "{} % off and the predicted speed {} rad/s, where the tachometer's noise is {}.",
                   format_value(100.0 * std::abs(estimate.inertia.value / truth.J - 1.0), 1),
                   format_value(100.0 * unseen_error, 2), format_value(speed_error, 2), format_value(speed_noise, 2)),

@@ -9,7 +9,7 @@
 namespace host {
 
 /// `folder`: one case of the independent plant with model.toml, train-steps.csv, validate.csv and truth.json.
-/// Identifies from the steps and predicts the validation record. Throws Failure(bad_input) where a file is missing.
+/// Identifies from the steps and predicts the validation record. Throws Failure(bad_input) if a file is missing.
 DemoPart show_shipped_drive(const std::string& folder, Report& report);
 
 }  // namespace host

@@ -70,18 +70,18 @@ double worst(const std::vector<double>& values) {
 
 DemoPart show_tracking(const sim::DriveDescription& machine, const sim::DriveDescription& identified, Report& report) {
   const AxisDesign design = design_axis(identified, {});
-  report.section(fmt::format("Axis {}: closed loop with the designed gains", machine.name),
-                 fmt::format("The controller knows the identified model only: poles at {:g} Hz, damping {:g}; "
-                             "Kc = {} V/mm, {} V s/rad; estimator at {} to {} Hz.",
-                             design.used.bandwidth_Hz, design.used.damping, format_value(design.Kc(0), 4),
-                             format_value(design.Kc(1), 4), format_value(design.observer_fn_Hz.front(), 3),
-                             format_value(design.observer_fn_Hz.back(), 3)));
+  report.section(
+      fmt::format("Axis {}: closed loop with the designed gains", machine.name),
+      fmt::format("The controller is designed from the identified model only: poles at {:g} Hz, damping {:g}; "
+                  "Kc = {} V/mm, {} V s/rad; estimator at {} to {} Hz.",
+                  design.used.bandwidth_Hz, design.used.damping, format_value(design.Kc(0), 4),
+                  format_value(design.Kc(1), 4), format_value(design.observer_fn_Hz.front(), 3),
+                  format_value(design.observer_fn_Hz.back(), 3)));
 
   BarChart bars{"Largest tracking error of that jog", "", "µm", {{"largest error", SeriesRole::after}}, {}, {}};
   TimePlot jogs;
   jogs.title = fmt::format("Jog at ±{:g} mm/s", kJog_mm_s);
-  jogs.caption =
-      "Above: the speed follows its reference. Below: position error without and with everything switched on.";
+  jogs.caption = "Above: the speed follows its reference. Below: position error without and with all compensations.";
   std::vector<double> errors_um;
   for (const Variant& variant : kVariants) {
     const Record record = run_jog(machine, parameters_of(identified, design, variant));

@@ -78,7 +78,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
   link_->send(firmware::encode(message));
   const auto deadline = link_->now() + patience;
   while (const auto reply = receive(deadline)) {
-    if (reply->type != MessageType::rejected && reply->client != client_) continue;  // another program's
+    if (reply->type != MessageType::rejected && reply->client != client_) continue;  // for another program
     if (reply->type == MessageType::samples) {
       keep_samples(*reply);
     } else if (reply->type == MessageType::rejected) {
@@ -86,7 +86,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
       fail(ExitCode::protocol, "the board rejects a report without a reason");
     } else if (reply->type == firmware::reply_to(message.type) && reply->sequence == message.sequence) {
       return *reply;
-    }  // else an answer to a request that was given up: not needed any more
+    }  // otherwise a late answer to a request that has timed out
   }
   const std::string others = other_users();
   fail(ExitCode::time_out,
@@ -111,7 +111,7 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
 std::string BoardClient::other_users() const { return host::other_users(link_->file()); }
 
 void BoardClient::keep_samples(const Message& message) {
-  constexpr std::size_t kMostWaiting = 100'000;  // more than a minute of samples: the program does not read them
+  constexpr std::size_t kMostWaiting = 100'000;  // more than a minute of samples that the program has not read
   if (message.length <= 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of an impossible length");
   if (samples_.size() == kMostWaiting) fail(ExitCode::protocol, "the board sends samples that were not asked for");
   Samples samples;
@@ -158,7 +158,7 @@ std::size_t BoardClient::axis_count() {
 firmware::TimingPayload BoardClient::timing(bool begin_anew) {
   const firmware::TimingRequest anew{static_cast<std::uint8_t>(begin_anew ? 1 : 0)};
   const Message reply = request(MessageType::timing, anew);
-  firmware::TimingPayload timing;  // on older boards it ends before the cycles
+  firmware::TimingPayload timing;  // older boards send it without the cycles
   std::memcpy(&timing, reply.payload.data(), std::min<std::size_t>(reply.length, sizeof timing));
   return timing;
 }
@@ -369,7 +369,7 @@ FaultLog BoardClient::fault_log() {
     Message message;
     message.type = MessageType::read_fault_log;
     message.put(wanted);
-    const Message reply = reply_to(message, kSavePatience);  // a sector of the log may just be erased
+    const Message reply = reply_to(message, kSavePatience);  // the board may be erasing a sector of the log
     if (reply.status == Status::unknown_request) break;
     if (reply.status != Status::no_such_row) require_ok(reply);
     const auto told = payload_of<firmware::FaultLogPayload>(reply);

@@ -39,7 +39,7 @@ class BoardClient {
  public:
   static constexpr std::chrono::milliseconds kPatience{1000};
 
-  /// `patience`: time-out of most answers; a board usually answers within milliseconds.
+  /// `patience`: time-out for most answers; a board usually answers within milliseconds.
   explicit BoardClient(std::unique_ptr<ReportLink> link, std::chrono::milliseconds patience = kPatience);
 
   firmware::IdentityPayload identify();
@@ -53,25 +53,25 @@ class BoardClient {
   std::size_t axis_count();
 
   firmware::ParameterValues read_values(firmware::ValueSet set = firmware::ValueSet::active);
-  /// Stages what differs from the active set (or everything), commits, reads back and compares by bits.
+  /// Stages the values that differ from the active set (or all), commits, reads back and compares bit by bit.
   void write_values(const firmware::ParameterValues& values, bool everything = false);
   /// The values in flash, including keys that this program does not know.
   std::vector<firmware::StoredEntry> read_stored();
   void save();
 
   void enable(std::uint8_t axes);
-  /// False if an axis moves or its amplifier still reports ready; then all stay disabled.
+  /// False if an axis moves or its amplifier still reports ready; then all axes stay disabled.
   bool enable_at_rest(std::uint8_t axes);
   void disable(std::uint8_t axes);
   void stop();
   void jog(std::uint8_t axis, double velocity);
   void move(std::uint8_t axis, std::int64_t target_counts);
   void move_by(std::uint8_t axis, std::int64_t counts);
-  /// Looks for home; `here`: states that the axis stands there.
+  /// Homes the axis; `here`: without motion, the present position becomes home.
   void home(std::uint8_t axis, bool here);
   void clear_faults();
   void heartbeat();
-  /// Makes this program the owner of motion that another program commanded.
+  /// Takes control of motion that another program commanded.
   void take_over();
   void restart();
 
@@ -91,7 +91,7 @@ class BoardClient {
 
   void arm_trigger(const firmware::TriggerRequest& wanted);
   firmware::TriggerStatePayload trigger_state();
-  /// From this half word on.
+  /// Reads the triggered capture from the half word `first` on.
   firmware::TriggeredPayload read_triggered(std::uint32_t first);
 
   void start_capture(const firmware::CaptureRequest& request);
@@ -121,7 +121,7 @@ class BoardClient {
   std::optional<Samples> next_samples(std::chrono::milliseconds patience);
 
   std::string name() const { return link_->name(); }
-  /// As host::other_users() has it.
+  /// The text of host::other_users() for this board.
   std::string other_users() const;
 
  private:
@@ -130,7 +130,7 @@ class BoardClient {
   firmware::Message request(firmware::MessageType type);
   /// The reply, whatever its status.
   firmware::Message reply_to(firmware::Message message, std::chrono::milliseconds patience);
-  /// Throws Failure where the board refuses; names the programs that have the motion.
+  /// Throws Failure if the board refuses; names the programs that control the motion.
   void require_accepted(const firmware::Message& reply) const;
   std::optional<firmware::Message> receive(std::chrono::steady_clock::time_point deadline);
   void keep_samples(const firmware::Message& message);
@@ -138,9 +138,9 @@ class BoardClient {
   std::unique_ptr<ReportLink> link_;
   std::chrono::milliseconds patience_;
   std::uint16_t client_;  ///< identifies this program among those that talk to the board; never 0
-  std::uint8_t pass_;     ///< the board never repeats it, so other programs cannot learn it; never 0
+  std::uint8_t pass_;     ///< never sent by the board, so other programs cannot learn it; never 0
   std::uint16_t sequence_ = 0;
-  std::size_t axis_count_ = 0;  ///< 0: not asked yet
+  std::size_t axis_count_ = 0;  ///< 0: not requested yet
   std::deque<Samples> samples_;
 };
 

@@ -62,7 +62,7 @@ std::string reset_text(std::uint8_t reset_cause) {
 }
 
 std::string brown_out_problem() {
-  return "the chip's brown-out reset is off, as it was delivered: while its supply fails it may do anything, so no "
+  return "the chip's brown-out reset is off (factory setting): while its supply fails it may do anything, so no "
          "drive is enabled. `axistool flash` sets it, by a probe or over USB; or STM32_Programmer_CLI -c port=SWD -ob "
          "BOR_LEV=0";
 }

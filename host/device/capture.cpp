@@ -73,7 +73,7 @@ class CaptureRun {
       if (samples) last_row_ = now;
       steer(now);
       if (now - heard > kHeartbeat) {
-        settings_.jogs.empty() ? board_.heartbeat() : examine();  // a capture, too, needs its client's heartbeat
+        settings_.jogs.empty() ? board_.heartbeat() : examine();  // keeps the capture alive
         heard = now;
       }
       if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))
@@ -89,7 +89,7 @@ class CaptureRun {
     }
   }
 
-  /// The jogs one after the other, timed by the computer's clock; the record shows the real motion.
+  /// Commands the jogs one after the other, timed by the computer's clock.
   void steer(steady_clock::time_point now) {
     if (jog_ > settings_.jogs.size() || settings_.jogs.empty() || now < next_jog_) return;
     if (jog_ == settings_.jogs.size()) {
@@ -123,7 +123,7 @@ class CaptureRun {
           settings_.trigger->rising ? value > settings_.trigger->level : value < settings_.trigger->level;
       triggered_ = beyond && was_short_;
       was_short_ = was_short_ || !beyond;
-      // While waiting not at every row: erasing at the front moves all others.
+      // While waiting for the trigger only every 1000 rows, because erasing at the front moves all other rows.
       if (triggered_ || capture_.number.size() > before_ + 1000) keep_last(before_ + 1);
       if (triggered_) capture_.trigger_s = (number - capture_.number.front()) * capture_.row_period_s;
     }
@@ -142,7 +142,7 @@ class CaptureRun {
     try {
       if (!settings_.jogs.empty()) board_.stop();
       board_.stop_capture();
-    } catch (const Failure&) {  // the board is gone, as the first failure reports
+    } catch (const Failure&) {  // the board is gone; the first failure is reported
     }
   }
 
@@ -154,7 +154,7 @@ class CaptureRun {
   std::size_t wanted_ = 0, before_ = 0, after_ = 0;
   std::size_t trigger_column_ = 0;
   bool triggered_ = false;
-  bool was_short_ = false;  ///< a trigger is a crossing, so an earlier row must be on the other side of the level
+  bool was_short_ = false;  ///< an earlier row was on the other side of the level, as a crossing requires
   std::size_t jog_ = 0;
   steady_clock::time_point next_jog_;
   steady_clock::time_point last_row_;

@@ -16,7 +16,7 @@ namespace host {
 
 struct Trigger {
   firmware::Channel channel = firmware::Channel::dac_code;
-  bool rising = true;  ///< the first row above the level; else the first below
+  bool rising = true;  ///< triggers at the first row above the level; otherwise at the first row below
   double level = 0.0;
 };
 
@@ -36,11 +36,11 @@ struct CaptureSettings {
   sim::DriveKind kind = sim::DriveKind::rotary;
   std::vector<firmware::Channel> channels;  ///< 1 to kWordsPerReport different ones
   std::uint16_t every = 1;                  ///< control periods from row to row
-  double duration_s = 1.0;                  ///< from the first row, or from the trigger; 0: as long as the jogs last
+  double duration_s = 1.0;                  ///< from the first row, or from the trigger; 0: the duration of the jogs
   std::optional<Trigger> trigger;           ///< its channel is among `channels`
-  double before_s = 0.0;                    ///< kept from before the trigger
-  double patience_s = 60.0;                 ///< for the trigger
-  double table_resolution = 0.0;            ///< of the scale on the table, mm (m): of the channel table_counts
+  double before_s = 0.0;                    ///< time before the trigger to keep
+  double patience_s = 60.0;                 ///< time-out for the trigger
+  double table_resolution = 0.0;            ///< mm (m) per count of the scale on the table (channel table_counts)
   std::vector<JogStep> jogs;                ///< one after the other, from the first row on; the axis is enabled
 };
 
@@ -48,8 +48,8 @@ struct Capture {
   std::vector<std::uint32_t> number;  ///< of each row; a jump means lost rows
   std::vector<std::vector<double>> channel;
   double row_period_s = 0.0;
-  std::optional<double> trigger_s;  ///< from the first row to the trigger; empty before it, too
-  std::size_t lost = 0;             ///< rows between the first and the last that did not arrive
+  std::optional<double> trigger_s;  ///< from the first row to the trigger; empty until it occurs
+  std::size_t lost = 0;             ///< number of missing rows between the first and the last
   std::uint32_t dropped_by_board = 0;
 };
 
@@ -73,12 +73,12 @@ void require_capturable(const firmware::ParameterValues& values, const CaptureSe
 /// Throws Failure(protocol) if rows were lost; `where` names the file with the gap.
 void require_no_loss(const Capture& capture, const std::string& where);
 
-/// Runs a capture. Throws Failure: time_out (no trigger), refused (ended before the trigger, or before a row), what
-/// BoardClient throws, device_fault when the axis stops during the jogs. However it ends, the axis is stopped and the
-/// board's capture ended.
+/// Runs a capture. Throws Failure: time_out (no trigger), refused (ended before the trigger or the first row),
+/// device_fault if the axis stops during the jogs, and those of BoardClient. However it ends, the axis is stopped and
+/// the board's capture ended.
 Capture run_capture(BoardClient& board, const CaptureSettings& settings, const CaptureWatch& watch = {});
 
-/// As a record: t_s from the rows' numbers, 0 at the first row.
+/// Converts a capture to a record; t_s follows from the rows' numbers and is 0 at the first row.
 Record capture_record(const Capture& capture, const CaptureSettings& settings, const std::string& drive);
 
 }  // namespace host

@@ -21,11 +21,12 @@ firmware::Channel channel_named(std::string_view name, sim::DriveKind kind);
 /// The default channels: command, position, speed, and their references.
 std::vector<firmware::Channel> usual_channels(bool tachometer_fitted);
 
-/// Turns words into V, mm (m), rad/s (m/s). Positions are extended from their low words, so rows must come in order.
+/// Turns words into V, mm (m), rad/s (m/s). Positions are extended from their low words, so rows must be given in
+/// order.
 class ChannelScale {
  public:
-  /// `axis`: the board's parameters; `counts_near`: approximate encoder counts at the first row; `table_resolution`: of
-  /// the scale on the table, mm (m), where there is one.
+  /// `axis`: the board's parameters; `counts_near`: approximate encoder counts at the first row; `table_resolution`:
+  /// resolution of the scale on the table, mm (m), if there is one.
   ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near,
                double table_resolution = 0.0);
 

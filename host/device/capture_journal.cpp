@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kEvery_s = 0.5;
 
-/// The rows from `begin` on, after the first row, from which times are counted.
+/// The first row, which is the origin of the times, and the rows from `begin` on.
 Capture tail_of(const Capture& capture, std::size_t begin) {
   const auto take = [begin](const auto& all, auto& some) {
     some.reserve(all.size() - begin + 1);
@@ -34,7 +34,7 @@ Capture tail_of(const Capture& capture, std::size_t begin) {
   return tail;
 }
 
-/// Without header, names and first row.
+/// Removes header, column names and first row from the text of a record.
 std::string_view rows_behind_first(std::string_view text) {
   for (bool in_header = true; in_header; text.remove_prefix(text.find('\n') + 1)) in_header = text.starts_with('#');
   return text.substr(text.find('\n') + 1);

@@ -1,4 +1,4 @@
-// A capture on disk while it runs, so that its rows survive a crash of the program or a power failure of the computer.
+// Writes a capture to disk while it runs, so that its rows survive a crash of the program or a power failure.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// OUTPUT.unfinished: a record that is extended twice a second, until the complete one replaces it.
+/// OUTPUT.unfinished: a record that is extended twice a second until the complete record replaces it.
 class CaptureJournal {
  public:
   /// Nothing is written before the first row. `settings` outlives this.
@@ -16,8 +16,8 @@ class CaptureJournal {
   CaptureJournal& operator=(const CaptureJournal&) = delete;
   ~CaptureJournal();
 
-  /// Appends the new rows, if a trigger is set only from the trigger on. Throws Failure: permission, bad_input (disk
-  /// full).
+  /// Appends the new rows; if a trigger is set, only those from the trigger on. Throws Failure: permission, bad_input
+  /// (disk full).
   void keep(const Capture& capture);
 
   /// Call it once the complete record is written.

@@ -21,7 +21,7 @@ double time_ms(Work work) {
   return ms_since(begin);
 }
 
-/// As many channels as a report holds, so that each control period is one report.
+/// Captures as many channels as a report holds, so that each control period needs one report.
 void run_capture(BoardClient& board, DeviceBench& bench, const std::function<void(double)>& progress) {
   constexpr std::uint16_t kAllOfX = (1u << firmware::kChannels) - 1;
   firmware::CaptureRequest request{{kAllOfX}, 1, 0};

@@ -11,7 +11,7 @@ namespace host {
 
 struct DeviceBench {
   double connect_ms = 0;  ///< open, identify, status
-  double open_ms = 0;  ///< of these, to find and open: over hidraw Linux 6.1 waits 50 ms (usbhid_open), over libusb not
+  double open_ms = 0;     ///< part of connect_ms, to find and open; over hidraw Linux 6.1 waits 50 ms (usbhid_open)
   std::size_t parameters = 0;
   double read_all_ms = 0;  ///< all parameters
   double set_all_ms = 0;   ///< all parameters staged, committed, read back and compared
@@ -23,7 +23,7 @@ struct DeviceBench {
   std::size_t lost_rows = 0;
 };
 
-/// Times everything with the parameters that the board has; nothing changes. Drives must be disabled.
+/// Measures all times with the board's present parameters; changes nothing. Drives must be disabled.
 /// `open` opens the connection; `progress` is called with the seconds of the capture so far.
 DeviceBench bench_device(const std::function<std::unique_ptr<ReportLink>()>& open, double capture_s,
                          const std::function<void(double)>& progress = {});

@@ -64,7 +64,7 @@ class Examination {
     const bool is_bad = cause == "watchdog" || cause == "fault" || cause == "brown-out";
     add(!is_bad, CheckResult::attention, "last reset", fmt::format("{}, {} since power on", cause, status.resets),
         cause == "brown-out" ? "check the supply of the board"
-                             : "the service port (115200 baud) tells registers and place of the fault: report them");
+                             : "the service port (115200 baud) prints registers and address of the fault: report them");
   }
 
   void brown_out(const BoardState& status) {
@@ -81,7 +81,7 @@ class Examination {
     }
   }
 
-  /// A full-speed endpoint that is polled every millisecond answers within two or three milliseconds.
+  /// Measures the exchange time: 2 or 3 ms for a full-speed endpoint polled every millisecond.
   void exchange() {
     constexpr int kExchanges = 100;
     std::vector<double> times;

@@ -18,7 +18,7 @@ struct DeviceCheck {
   std::string remedy;  ///< empty when good
 };
 
-/// How long Linux takes to open a board over hidraw.
+/// Checks whether Linux waits when it opens a board over hidraw.
 DeviceCheck check_opening();
 
 /// Reads the board's complete state, and tests the connection for a second. Changes nothing.

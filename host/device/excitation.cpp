@@ -25,7 +25,7 @@ using std::chrono::steady_clock;
 
 constexpr double kRest_s = 0.2;
 
-/// Rows of a capture as they come, in the order of the channels.
+/// Collects the rows of a capture as they arrive, in the order of the channels.
 class Rows {
  public:
   Rows(BoardClient& board, const CaptureSettings& settings, ChannelScale scale, Capture& capture)
@@ -149,7 +149,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
   outcome.settings.kind = scale.kind;
   outcome.settings.channels = usual_channels(scale.has_tachometer);
   if (count > 1 || is_open_loop(make(0, 0.0)))
-    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference, or not in all rows
+    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // the reference is missing in some or all rows
   const firmware::AxisStatus status = board.status().axis.at(axis);
   if (scale.table_resolution > 0.0 && (status.flags & firmware::kAxisScale) != 0)
     outcome.settings.channels.push_back(Channel::table_counts);
@@ -173,7 +173,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     firmware::ExcitationRequest request = excitation.request;
     request.axis = axis;
     if (!is_capturing) board.start_capture(capture);
-    is_capturing = true;  // from here on this program must stop it
+    is_capturing = true;  // from here on this program must stop the capture
     board.start_excitation(request);
     firmware::ExcitationStatePayload state;
     bool is_asked = false;
@@ -196,7 +196,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     outcome.state = state;
     return state.end == static_cast<std::uint8_t>(ExcitationEnd::completed) && !stop();
   };
-  // An axis that has just stopped does not yet count as standing.
+  // The board reports an axis as standing only some time after it has stopped.
   const auto rest = [&] {
     const std::size_t wanted = outcome.capture.number.size() + static_cast<std::size_t>(kRest_s * scale.rate_Hz);
     while (outcome.capture.number.size() < wanted && rows.fetch(milliseconds(500))) continue;
@@ -211,7 +211,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     try {
       board.stop_excitation();
       if (is_capturing) board.stop_capture();
-    } catch (const Failure&) {  // the board is gone, as the first failure reports
+    } catch (const Failure&) {  // the board is gone; the first failure is reported
     }
     throw;
   }

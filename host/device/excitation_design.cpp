@@ -1,4 +1,4 @@
-// Converts a kind of experiment, its numbers and its box to the board's request.
+// Converts an experiment's kind, numbers and box to the board's request.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,7 +16,7 @@
 namespace host {
 
 const std::array<ExcitationKindText, 8> kExcitationKindTexts{{
-    {"steps", "voltage levels in both directions, each until the box makes it turn", "[V …] hold=S"},
+    {"steps", "voltage levels in both directions, each until the box makes the axis reverse", "[V …] hold=S"},
     {"ramp", "voltage that rises slowly until the axis breaks away, in both directions", "amplitude=V time=S"},
     {"sine", "a sine", "amplitude=V|mm frequency=HZ ride=MM/S"},
     {"chirp", "a sine whose frequency rises", "amplitude=V|mm from=HZ to=HZ ride=MM/S"},
@@ -24,7 +24,7 @@ const std::array<ExcitationKindText, 8> kExcitationKindTexts{{
      "amplitude=V|mm (peak) from=HZ to=HZ lines=N period=SAMPLES ride=MM/S"},
     {"reversals", "triangles of the reference", "amplitude=MM speed=MM/S"},
     {"ladder", "jogs at a series of speeds, in both directions", "[MM/S …] hold=S"},
-    {"dwell", "short jogs with longer and longer rests between them", "[S …] speed=MM/S hold=S"},
+    {"dwell", "short jogs with increasing rests between them", "[S …] speed=MM/S hold=S"},
 }};
 
 namespace {
@@ -152,8 +152,8 @@ class Designer {
     made_.request.amplitude = std::max(made_.request.amplitude, std::abs(static_cast<float>(value)));
   }
 
-  /// Steps of several sizes, because friction is a larger part of the small ones, which separates it from inertia. No
-  /// step is so small that it could not brake the motion from the step before.
+  /// Steps of several sizes separate friction from inertia, because friction is a larger part of the small steps. Each
+  /// step is large enough to brake the motion from the previous one.
   void steps() {
     enter(ExcitationKind::train, ExcitationInput::open_loop);
     std::vector<double> levels = numbers_.list;
@@ -210,7 +210,8 @@ class Designer {
     made_.header["excitation_ride"] = fmt::format("{:g}", ride);
   }
 
-  /// Travel of a stop from a steady jog within the limits, including the samples until it begins.
+  /// Sets the margin inside the box: the stopping distance from a steady jog within the limits, including the samples
+  /// until the stop begins.
   void put_margin(double speed) {
     if (!(scale_.acceleration > 0.0) || !(scale_.jerk > 0.0)) return;
     const double stop = speed * speed / (2.0 * scale_.acceleration) + speed * scale_.acceleration / (2.0 * scale_.jerk);
@@ -239,8 +240,8 @@ class Designer {
     return scale_.kind == sim::DriveKind::rotary ? "mm" : "m";
   }
 
-  /// Only some of the odd harmonics: the other lines show the drive's nonlinearity. Phases are random; the signal is
-  /// scaled to its peak.
+  /// Uses only some of the odd harmonics, so that the other lines show the drive's nonlinearity. Phases are random; the
+  /// signal is scaled to its peak.
   void multisine() {
     enter(ExcitationKind::multisine, chosen_input());
     put_amplitude(0.5 * box_.volts);
@@ -287,7 +288,7 @@ class Designer {
     for (auto line = static_cast<std::uint32_t>(std::ceil(from / width)); line * width <= to; ++line)
       if (line % 2 == 1) all.push_back(line);
     if (all.size() <= most) return all;
-    std::vector<std::uint32_t> chosen;  // evenly over the logarithm of the frequency
+    std::vector<std::uint32_t> chosen;  // evenly spaced in the logarithm of the frequency
     for (std::size_t i = 0; i < most; ++i) {
       const double share = most > 1 ? static_cast<double>(i) / static_cast<double>(most - 1) : 0.0;
       const double wanted = all.front() * std::pow(static_cast<double>(all.back()) / all.front(), share);

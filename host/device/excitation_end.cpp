@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// Encoder against tachometer in the capture: least squares of the travel over the angle of each sample.
+/// Compares encoder and tachometer in the capture: least-squares factor between travel and angle per sample.
 std::string disagreement(const ExcitationOutcome& outcome, double lead) {
   const Record record = capture_record(outcome.capture, outcome.settings, "");
   const std::string general = "encoder and tachometer show different motion";

@@ -8,7 +8,7 @@
 namespace host {
 
 /// Throws, with the remedy, Failure(device_fault) if the axis has a fault, Failure(refused) if it was stopped, left its
-/// box or did not move, Failure(protocol) if rows were lost. `kept`: the place of the record, in words; may be empty.
+/// box or did not move, Failure(protocol) if rows were lost. `kept`: text that says where the record is; may be empty.
 void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOutcome& outcome,
                        const std::string& kept);
 

@@ -15,7 +15,7 @@ const char* activity_name(std::uint8_t activity) {
 
 double hours(std::uint32_t seconds) { return static_cast<double>(seconds) / 3600.0; }
 
-/// Numbers of ARMv7-M ARM, table B1-4.
+/// Exception numbers: ARMv7-M Architecture Reference Manual, table B1-4.
 const char* exception_name(std::uint8_t number) {
   switch (number) {
     case 2:

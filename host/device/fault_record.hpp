@@ -1,4 +1,4 @@
-// The rows that an axis kept from before its fault, as a record.
+// The samples that an axis kept from before its fault, as a record.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// Empty when the axis kept nothing, or too little for a record.
+/// Empty if the axis kept no samples, or too few for a record.
 std::optional<Record> read_fault_record(BoardClient& board, std::uint8_t axis, sim::DriveKind kind);
 
 }  // namespace host

@@ -14,14 +14,14 @@ using std::chrono::milliseconds;
 
 constexpr const char* kBootloader = "0483:df11";  // STMicroelectronics' DFU bootloader: AN2606, AN3156
 constexpr const char* kFlashStart = "0x08000000";
-// How the STM32F405's bootloader describes 1 MB of flash (RM0090, table 5).
+// The STM32F405 bootloader's description of 1 MB of flash (RM0090, table 5).
 constexpr const char* kSectors = "04*016Kg,01*064Kg,07*128Kg";
 constexpr milliseconds kResetPulse{20};        // the pin needs 20 us (datasheet, table 47); RC on the board: 1 ms
 constexpr milliseconds kBootloaderStart{300};  // USB bootloader ready: AN2606, section "STM32F40xxx"; plus enumeration
 constexpr milliseconds kSettle{1};
-constexpr const char* kNew = ".new";      // file of the option bytes to write, beside that of those read
-constexpr milliseconds kComesBack{1500};  // the bootloader resets itself, then USB enumerates
-// 16 bytes of which the first has the level and the second the read protection (RM0090, 3.6.2 and table 13).
+constexpr const char* kNew = ".new";      // suffix of the file with the option bytes to write
+constexpr milliseconds kComesBack{1500};  // time until the bootloader has reset itself and USB has enumerated
+// 16 bytes: the first contains the brown-out level, the second the read protection (RM0090, 3.6.2 and table 13).
 constexpr const char* kOptions = "0x1FFFC000";
 constexpr unsigned kBrownOutField = 0x0C, kUnprotected = 0xAA;  // the level of 2.7 V is 0 (RM0090, 3.9.6)
 
@@ -54,8 +54,8 @@ std::vector<std::string> read_options(const FlashRequest& request) {
   return {"dfu-util", "-d", kBootloader, "-a", "1", "-s", std::string(kOptions) + ":16", "-U", request.options};
 }
 
-/// For openocd, by the chip's register, which has the option bytes as they were loaded (RM0090, 3.9.6). Writes them
-/// with all other bits as they are.
+/// Commands for openocd. They use the chip's register, which holds the loaded option bytes (RM0090, 3.9.6), and keep
+/// all other bits.
 std::vector<std::string> brown_out_commands() {
   return {"-c", "init",
           "-c", "reset halt",
@@ -68,7 +68,7 @@ std::vector<std::string> brown_out_commands() {
 std::vector<FlashStep> dfu_steps(const FlashRequest& request) {
   const std::string place = fmt::format("{}:{}", kFlashStart, request.image_size);
   std::vector<FlashStep> steps{
-      run({"dfu-util", "-l", "-d", kBootloader}, "find the board and see which chip it is"),
+      run({"dfu-util", "-l", "-d", kBootloader}, "find the board and identify its chip"),
       run(read_options(request), "read the option bytes"),
       {Kind::brown_out, false, {}, {}, "set the brown-out reset to 2.7 V unless it is, and read protection is off"},
       run({"dfu-util", "-d", kBootloader, "-a", "0", "-s", kFlashStart, "-D", request.image}, "write"),
@@ -86,9 +86,10 @@ constexpr const char* kLevelNotTaken =
     "programmer (STM32_Programmer_CLI -ob BOR_LEV=0)";
 
 [[noreturn]] void refuse_protected() {
-  throw Failure(ExitCode::refused,
-                "the chip's read protection is on, and to change its option bytes might erase it: nothing was written. "
-                "Take the protection off by ST's programmer first, which erases the chip: parameters and fault log go");
+  throw Failure(
+      ExitCode::refused,
+      "the chip's read protection is on, and changing its option bytes might erase the chip: nothing was written. "
+      "First remove the protection with ST's programmer, which erases the chip with parameters and fault log");
 }
 
 [[noreturn]] void explain(const FlashStep& step, const CommandResult& result) {
@@ -140,7 +141,7 @@ void set_brown_out(const FlashRequest& request, const FlashActions& actions) {
   if (has_brown_out_level(options)) return;
   const auto user = static_cast<unsigned char>(static_cast<unsigned char>(options[0]) & ~kBrownOutField);
   options[0] = static_cast<char>(user);
-  if (options.size() > 2) options[2] = static_cast<char>(~user);  // the complement that the chip keeps beside it
+  if (options.size() > 2) options[2] = static_cast<char>(~user);  // the chip requires the complement beside the byte
   actions.write_options(request.options + kNew, options);
   const FlashStep write = run({"dfu-util", "-d", kBootloader, "-a", "1", "-s", kOptions, "-D", request.options + kNew},
                               "set the brown-out reset to 2.7 V");

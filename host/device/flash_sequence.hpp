@@ -43,8 +43,8 @@ struct FlashStep {
   std::string meaning;
 };
 
-/// The whole sequence. Over USB and by a probe it also sets the level of the chip's brown-out reset, once, unless read
-/// protection is on; over the serial bootloader only the image is written. After a failure between its steps,
+/// The whole sequence. Over USB and by a probe it also sets the level of the chip's brown-out reset, unless it is set
+/// or read protection is on; over the serial bootloader only the image is written. After a failure between its steps,
 /// recovery_steps() lets the board start its present image.
 std::vector<FlashStep> flash_steps(const FlashRequest& request);
 std::vector<FlashStep> recovery_steps(const FlashRequest& request);
@@ -52,13 +52,13 @@ std::vector<FlashStep> recovery_steps(const FlashRequest& request);
 /// One line of text, as a dry run prints it.
 std::string describe(const FlashStep& step, const FlashRequest& request);
 
-/// The actions of a sequence. Tests pass recorders.
+/// The actions of a sequence; tests replace them.
 struct FlashActions {
   std::function<void(bool)> set_boot0, set_reset;
   std::function<void(std::chrono::milliseconds)> pause;
   std::function<CommandResult(const std::vector<std::string>&)> run;
   std::function<bool()> read_back_equals;
-  std::function<std::string()> read_options;  ///< removes the last upload's file: dfu-util replaces none
+  std::function<std::string()> read_options;  ///< first removes the file of the last upload: dfu-util never overwrites
   std::function<void(const std::string& file, const std::string& bytes)> write_options;
   std::function<void(const std::string&)> tell;
 };

@@ -12,11 +12,11 @@
 
 namespace host {
 
-/// For a board with boot code, the file from `make firmware` holds that code first, then the image.
+/// A file from `make firmware`: the image, for a board with boot code after that code.
 struct ImageFile {
   std::string path;
   std::vector<std::byte> bytes;  ///< all of the file
-  std::size_t begin = 0;         ///< of the image in the file: after the boot code; 0 without boot code
+  std::size_t begin = 0;         ///< offset of the image in the file: after the boot code; 0 without boot code
   firmware::ImageHeader header;
   firmware::ImageState state = firmware::ImageState::no_header;
 
@@ -27,8 +27,8 @@ struct ImageFile {
   }
 };
 
-/// Throws Failure (bad_input) for a file that cannot be read or holds no image of this project. A damaged image is
-/// returned, with the damage in its state.
+/// Throws Failure (bad_input) for a file that cannot be read or contains no image of this project. A damaged image is
+/// returned; its state says how it is damaged.
 ImageFile read_image_file(const std::string& path);
 /// The same from bytes in memory; `path` is for messages.
 ImageFile parse_image_file(std::string_view bytes, const std::string& path);
@@ -36,7 +36,7 @@ ImageFile parse_image_file(std::string_view bytes, const std::string& path);
 /// Throws Failure (bad_input) for an image that is damaged or for another board or chip.
 void check_image_for(const ImageFile& image, const std::string& board);
 
-/// Plain words for a state.
+/// A state in words.
 std::string describe(firmware::ImageState state);
 
 }  // namespace host

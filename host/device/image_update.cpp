@@ -130,15 +130,15 @@ void confirm_image(BoardClient& board) {
 
 BoardClient restart_and_reopen(BoardClient board, const std::function<BoardClient()>& open) {
   constexpr std::chrono::seconds kLimit{30};
-  constexpr std::chrono::milliseconds kRestart{500};  // 20 ms to the reset, and USB lets go of the board
+  constexpr std::chrono::milliseconds kRestart{500};  // 20 ms until the reset, then USB disconnects
   board.restart();
   board.wait(kRestart);
   const auto end = std::chrono::steady_clock::now() + kLimit;
   try {
-    board.identify();  // within this process the link outlives a restart
+    board.identify();  // succeeds if the board is simulated in this process: its link survives a restart
     return board;
   } catch (const Failure&) {
-    const BoardClient gone = std::move(board);  // otherwise no other program could open it
+    const BoardClient gone = std::move(board);  // closes the link, so that the board can be opened again
   }
   for (;;) {
     try {

@@ -20,7 +20,7 @@ SupervisorState state_of(const BoardState& status, std::size_t axis) {
   return static_cast<SupervisorState>(status.axis.at(axis).state);
 }
 
-/// Requests the status until `done`, which also serves as heartbeat.
+/// Requests the status, which also serves as heartbeat, until `done`.
 template <typename Done>
 bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done done) {
   const auto deadline = board.now() + patience;
@@ -38,7 +38,7 @@ bool for_all(std::uint8_t mask, Each each) {
   return true;
 }
 
-/// Throws once another program owns the motion: then this program must not end it.
+/// Throws if another program has taken control of the motion, which this program then must not end.
 void require_own_motion(const BoardState& status) {
   if ((status.flags & firmware::kBoardOthers) != 0)
     throw Failure(ExitCode::refused, "another program has taken over the motion");
@@ -50,16 +50,16 @@ bool rests(const BoardState& status, std::uint8_t axis) {
   return (status.axis.at(axis).flags & firmware::kAxisAtRest) != 0;
 }
 
-/// Without time-out, because limits of acceleration may be low. A silent board ends the wait.
+/// Has no time-out, because limits of acceleration may be low. Throws if the board does not answer.
 void stop_and_wait(BoardClient& board, std::uint8_t axis) {
   board.stop();
   ask_until(board, std::chrono::hours(1), [&](const auto& status) { return rests(status, axis); });
 }
 
-/// For a motion that ends by itself.
+/// Waits for a motion that ends by itself.
 void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
   bool interrupted = false;
-  board.wait(kHeartbeat);  // it begins with the next control period
+  board.wait(kHeartbeat);  // the motion begins with the next control period
   ask_until(board, std::chrono::hours(24), [&](const auto& status) {
     interrupted = stop();
     return interrupted || rests(status, axis);
@@ -67,8 +67,8 @@ void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bo
   if (interrupted) stop_and_wait(board, axis);
 }
 
-/// The distance by which to move the switch, which the fault's own text cannot state: half a turn before the pulse is
-/// best.
+/// Throws with the distance by which to move the switch, which the fault's own text cannot state: best is half a turn
+/// before the pulse.
 [[noreturn]] void refuse_switch(BoardClient& board, std::uint8_t axis) {
   const firmware::ParameterValues all = board.read_values();
   const firmware::AxisValues values = all.axis(axis);
@@ -106,7 +106,7 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
   // An axis that was just disabled may still coast.
   if (!ask_until(board, std::chrono::seconds(2), [&](const auto&) { return board.enable_at_rest(mask); }))
     board.enable(mask);
-  // The longest that an amplifier and a brake may take by their parameters, and a little more.
+  // The longest times that the parameters of amplifier and brake allow, with some margin.
   const bool closed = ask_until(board, std::chrono::seconds(17), [&](const auto& status) {
     return for_all(mask, [&](std::uint8_t axis) {
       require_no_fault(status, axis);
@@ -132,14 +132,12 @@ void disable_and_wait(BoardClient& board, std::uint8_t mask) {
 
 void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity) {
   const double limit = static_cast<double>(values.axis(axis).get<"limits.velocity">());
-  constexpr double kRounding = 1.0 + 1e-6;  // of the board's single precision
+  constexpr double kRounding = 1.0 + 1e-6;  // rounding of the board's single precision
   if (std::abs(velocity) <= limit * kRounding) return;
   const char* name = firmware::kAxisNames.at(axis).data();
-  throw Failure(
-      ExitCode::refused,
-      fmt::format("{:g} is beyond {}.limits.velocity = {:g}: jog at {:g} at most, or, where the machine may go "
-                  "faster, set {}.limits.velocity",
-                  velocity, name, limit, limit, name));
+  throw Failure(ExitCode::refused, fmt::format("{:g} is beyond {}.limits.velocity = {:g}: jog at {:g} at most, or, if "
+                                               "the machine may go faster, set {}.limits.velocity",
+                                               velocity, name, limit, limit, name));
 }
 
 void require_no_contact(BoardClient& board, const firmware::ParameterValues& values) {

@@ -1,4 +1,4 @@
-// Commanded motion, with the heartbeat that a board requires meanwhile.
+// Commanded motion, with the heartbeat that a board requires during it.
 #pragma once
 
 #include <chrono>
@@ -9,21 +9,21 @@
 
 namespace host {
 
-/// Interval of heartbeats: a fifth of the silence that a board tolerates while an axis moves.
+/// Interval of heartbeats: a fifth of the board's heartbeat time-out while an axis moves.
 inline constexpr std::chrono::milliseconds kHeartbeat{20};
 
-/// Enables the axes of `mask` and waits until their loops are closed, a self-test before included. Throws
+/// Enables the axes of `mask` and waits until their loops are closed, including a self-test before. Throws
 /// Failure(device_fault, refused, time_out).
 void enable_and_wait(BoardClient& board, std::uint8_t mask);
 
 /// Whether all loops of the mask are closed.
 bool are_enabled(BoardClient& board, std::uint8_t mask);
 
-/// Slows down, drops the enables and waits until they are off.
+/// Slows the axes down, disables them and waits until they are off.
 void disable_and_wait(BoardClient& board, std::uint8_t mask);
 
-/// Throws Failure(refused) naming the limit where `velocity` (mm/s or m/s) is beyond the axis's limits.velocity: the
-/// board would move more slowly than commanded.
+/// Throws Failure(refused) if `velocity` (mm/s or m/s) exceeds the axis's limits.velocity, because the board would move
+/// more slowly than commanded.
 void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity);
 
 /// Throws Failure(answer_is_no) if the last jog, move or homing ended because the touch probe made contact.

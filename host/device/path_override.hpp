@@ -5,8 +5,8 @@
 
 namespace host {
 
-/// The plan keeps the limits at its own speed, so overrides are at most 100 %: a faster feed must be planned
-/// beforehand.
+/// Overrides are at most 100 %, because the plan keeps the axes' limits only at its own speed. A faster feed must be
+/// planned beforehand.
 class PathOverride {
  public:
   static constexpr int kMost = 1000, kStep = 100, kLeast = 100;  ///< per mille; 0 is a feed hold
@@ -19,7 +19,7 @@ class PathOverride {
     if (key == '<') change(rapid_, -kStep);
   }
 
-  /// Of the present motion of the path, per mille.
+  /// Override of the present motion of the path, per mille.
   int permille(bool is_rapid) const { return is_rapid ? rapid_ : feed_; }
 
  private:

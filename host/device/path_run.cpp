@@ -22,10 +22,10 @@ using firmware::PathStatePayload;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kRound{10};       // a tenth of the silence that a board tolerates while it moves
-constexpr int kReportsARound = 4;        // of rows, which arrive continuously: at most two milliseconds each
-constexpr double kHeadStart_s = 0.5;     // of nodes, before the board starts
-constexpr double kMostRows_Hz = 1000.0;  // a cable carries this many rows of two axes beside the nodes
+constexpr milliseconds kRound{10};       // a tenth of the board's heartbeat time-out while it moves
+constexpr int kReportsARound = 4;        // reports of rows, which arrive continuously; each takes at most 2 ms
+constexpr double kHeadStart_s = 0.5;     // duration of the nodes sent before the board starts
+constexpr double kMostRows_Hz = 1000.0;  // USB carries this many rows of two axes besides the nodes
 
 firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative,
                                        firmware::ProbeStop probe = firmware::ProbeStop::none) {
@@ -46,7 +46,7 @@ std::vector<BoardPosition> positions(const firmware::OpenPathPayload& opened, co
   return at;
 }
 
-/// In the order of the axes' numbers, as the board reads them.
+/// The node for the board, with its axes in the order of their numbers.
 std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathScale& scale) {
   std::vector<std::uint32_t> words{node.time() | (is_last ? firmware::kLastNode : 0u)};
   std::vector<std::size_t> order(scale.axes.size());
@@ -66,7 +66,7 @@ class Stream {
   Stream(BoardClient& board, const PathWords& words, const PathScale& scale, const std::vector<PathStop>& stops)
       : board_(board), words_(words), scale_(scale), stops_(stops) {}
 
-  /// Up to the next stop: nodes after it are sent once the operator continues the program.
+  /// Whether all nodes up to the next stop are sent; those after it are sent when the operator continues the program.
   bool is_all_sent() const { return next_ == (passed_ < stops_.size() ? stops_[passed_].knot : words_.nodes.size()); }
   /// The stop that the axes have reached.
   const PathStop* waits() const {
@@ -80,14 +80,14 @@ class Stream {
   void ask() { state_ = board_.path_state(); }
   void set(const PathStatePayload& state) { state_ = state; }
 
-  /// One node; false where there is none to send, or no room.
+  /// Sends one node; false if there is none to send, or no room on the board.
   bool send() {
     if (is_all_sent()) return false;
     const PathWord& node = words_.nodes[next_];
     try {
       if (!board_.path_nodes(bytes_of(node, next_ + 1 == words_.nodes.size(), scale_), state_)) return false;
     } catch (const Failure& failure) {
-      // A stopping path accepts no more nodes, whoever stopped it.
+      // A stopping path accepts no more nodes.
       state_ = board_.path_state();
       if (static_cast<PathPhase>(state_.phase) >= PathPhase::stopping) {
         next_ = words_.nodes.size();
@@ -148,7 +148,7 @@ std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale
 
 namespace {
 
-/// The references follow the end of a path by the samples of their preview; another path begins at rest.
+/// Waits until the references are at rest: they lag the end of the path by the samples of their preview.
 void follow_to_rest(BoardClient& board, const PathScale& scale, PathRecorder& recorder) {
   const auto until = steady_clock::now() + std::chrono::seconds(1);
   const auto moves = [](const auto& axis) { return (axis.flags & firmware::kAxisAtRest) == 0; };
@@ -237,7 +237,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
     while (stream.sent_s() < kHeadStart_s && stream.send()) continue;
     recorder.start();
     const std::vector<std::uint32_t>& rows = recorder.capture().number;
-    while (!rows.empty() && recorder.fetch(milliseconds(0))) continue;  // of the rest since an earlier path
+    while (!rows.empty() && recorder.fetch(milliseconds(0))) continue;  // discards rows at rest since an earlier path
     const std::size_t first = rows.size();
     stream.set(board.start_path());
     PathWish given;
@@ -246,7 +246,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
     for (;;) {
       const bool sent = stream.send();
       for (int k = 0; k < kReportsARound && recorder.fetch(sent ? milliseconds(0) : milliseconds(2)); ++k) continue;
-      // A simulated board in this process has its own time, which the rows give.
+      // The time comes from the rows, because a simulated board in this process has its own clock.
       const auto now = steady_clock::now();
       if (now - asked < kRound && rows.size() < rows_asked + 16) continue;
       asked = now;
@@ -269,7 +269,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
   } catch (const Failure&) {
     try {
       board.stop_path();
-    } catch (const Failure&) {  // the board is gone, as the first failure reports
+    } catch (const Failure&) {  // the board is gone; the first failure is reported
     }
     throw;
   }
@@ -282,7 +282,7 @@ std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale
   if ((state.flags & firmware::kProbeLatched) == 0)
     throw Failure(
         ExitCode::device_fault,
-        "the probe changed, but the board's timers did not latch where: check the probe's wire and its input");
+        "the probe changed, but the board's timers did not latch the position: check the probe's wire and its input");
   std::vector<double> mm;
   for (std::size_t i = 0; i < scale.axes.size(); ++i) {
     const auto& at = state.axis.at(scale.axes[i]);
@@ -293,7 +293,7 @@ std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale
 
 namespace {
 
-/// Position of a reference on the plan, searched forward from the last one, since the board's clock never goes back.
+/// Position of a reference on the plan. The search goes only forward from the last one, as the board's clock does.
 class PlanPlace {
  public:
   explicit PlanPlace(const PlannedPath& path) : path_(path) {}
@@ -305,10 +305,10 @@ class PlanPlace {
     return between(*(next - 1), *next, inside_s).position;
   }
 
-  /// `rows`: since the one before, of `row_s` each.
+  /// `rows`: number of rows since the previous call; each lasts `row_s`.
   double advance(const PathPoint& reference, std::uint32_t rows, double row_s) {
-    // Where the axes turn round, the nearest point may lie before the turn, by the rounding of the reference: there the
-    // search stays behind, until it looks beyond the turn.
+    // Where the axes reverse, rounding of the reference may put the nearest point before the reversal. The search then
+    // stays there until its range extends beyond the reversal.
     constexpr double kLost_mm = 1e-3, kTurn_s = 0.1;
     const double usual_s = 2.0 * rows * row_s;
     if (search(reference, usual_s, row_s) > kLost_mm) search(reference, std::max(kTurn_s, usual_s), row_s);
@@ -316,15 +316,15 @@ class PlanPlace {
   }
 
  private:
-  /// The nearest point within this time, at which the place then is. Returns its distance.
+  /// Moves the position to the nearest point within this time. Returns its distance.
   double search(const PathPoint& reference, double ahead_s, double row_s) {
-    constexpr double kSteps = 8.0;  // in the time of a row
+    constexpr double kSteps = 8.0;  // within the time of a row
     const auto steps = static_cast<std::uint32_t>(std::min(ahead_s, path_.duration_s() + row_s) / row_s * kSteps);
     double best = std::numeric_limits<double>::infinity(), best_s = time_s_;
     for (std::uint32_t i = 0; i <= steps; ++i) {
       const double tried_s = std::min(time_s_ + row_s * i / kSteps, path_.duration_s());
       const double distance = (position(tried_s) - reference).norm();
-      if (distance > best + 1e-6) continue;  // while nothing moves, the latest
+      if (distance > best + 1e-6) continue;  // of equal distances, as at rest, takes the latest
       best = std::min(best, distance);
       best_s = tried_s;
     }
@@ -356,7 +356,7 @@ std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPa
     const double time_s =
         place.advance(point_of(capture.reference_mm, k, path.knots.front().position), rows, capture.row_period_s);
     const PathPoint seen = point_of(capture.mm, k, path.knots.front().position) + half;
-    // Against the motion as it was planned, tolerances of corners included, a while to either side.
+    // Compares with the planned motion, including the tolerances of corners, for some time to either side.
     constexpr double kWhile_s = 0.02, kStep_s = 0.001;
     double nearest = std::numeric_limits<double>::infinity();
     PathPoint last = place.position(time_s - kWhile_s);

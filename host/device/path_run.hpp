@@ -14,29 +14,29 @@
 
 namespace host {
 
-/// Values of some axes from a board's parameters. Throws Failure(refused) if an axis is not fitted but must be.
+/// Values of the axes that a path needs, from a board's parameters.
 struct PathBoard {
   PathScale scale;
   AxisLimits limits;
   PathPoint least, most;  ///< soft limits, mm
   PathPoint home;         ///< homing.position, mm
 };
-/// `metres`: axes whose parameters are in m, as those of a linear drive.
+/// `metres`: mask of the axes whose parameters are in m (linear drives).
 PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres = 0,
                      bool needs_fitted = true);
 
-/// The operator's commands, requested some fifty times a second.
+/// The operator's commands, polled some fifty times a second.
 struct PathWish {
   bool held = false;  ///< feed hold
   bool stop = false;
-  int permille = 1000;  ///< of the planned speed
-  bool resume = false;  ///< continues if the program waits for the operator
+  int permille = 1000;  ///< override, per mille of the planned speed
+  bool resume = false;  ///< continue if the program waits for the operator
 };
 
 struct PathProgress {
   firmware::PathStatePayload state;
-  double elapsed_s = 0.0;           ///< of the plan
-  const PathStop* waits = nullptr;  ///< the stop at which the program waits for the operator; the axes stand there
+  double elapsed_s = 0.0;           ///< time of the plan
+  const PathStop* waits = nullptr;  ///< stop at which the program waits, at rest, for the operator; else null
 };
 
 /// Encoders and references, row by row.
@@ -49,19 +49,19 @@ struct PathCapture {
   std::uint32_t dropped_by_board = 0;
 };
 
-/// Records the axes from the first path on that it is given to, through all further ones and the rests between them.
+/// Records the axes from the first path that uses it, through all further paths and the rests between them.
 class PathRecorder {
  public:
   PathRecorder(BoardClient& board, const PathBoard& machine);
   PathRecorder(const PathRecorder&) = delete;
   PathRecorder& operator=(const PathRecorder&) = delete;
-  ~PathRecorder();  ///< the board then captures no more
+  ~PathRecorder();  ///< ends the board's capture
 
-  /// Once it runs, further calls do nothing.
+  /// Starts the capture; does nothing if it runs.
   void start();
-  /// Takes what has come; waits for so long if nothing has. False if nothing came.
+  /// Takes the rows that have arrived; if there are none, waits for them, at most `patience`. False if none arrived.
   bool fetch(std::chrono::milliseconds patience);
-  /// With all rows that the board has sent.
+  /// Ends the capture and takes all rows that the board has sent.
   void stop();
   const PathCapture& capture() const { return capture_; }
 
@@ -78,10 +78,10 @@ class PathRecorder {
 
 struct PathOutcome {
   firmware::PathStatePayload state;
-  double clock_s = 0.0;  ///< of the board, from start to rest; by the recorder's rows
+  double clock_s = 0.0;  ///< duration from start to rest on the board's clock, from the recorder's rows
 };
 
-/// References of enabled, standing axes, where a path must begin. Opens a path, which may be opened again.
+/// References of enabled axes at rest, where a path must begin. Opens a path on the board; may be called again.
 std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale, bool relative);
 
 /// Follows the path from its beginning to rest, or until the probe reaches the expected state. However it ends, the
@@ -94,10 +94,11 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
 /// Failure(device_fault) if the edge was not latched.
 std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale& scale);
 
-/// As a record of the first axis, with the positions of the others and the contour error as further columns.
+/// Converts the capture to a record of the first axis, with the positions of the others and the contour error as
+/// further columns.
 Record path_record(const PathCapture& capture, const PathBoard& board, const std::vector<double>& contour_um);
 
-/// Distance of the encoders' point from the path for the rows from `begin` to before `end`, um.
+/// Distance of the position by the encoders from the path, um, for the rows from `begin` to before `end`.
 std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale,
                                      std::size_t begin, std::size_t end);
 inline std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path,

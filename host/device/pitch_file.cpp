@@ -1,4 +1,4 @@
-// The file with the measured errors of a screw: host/device/pitch_table.hpp.
+// Reads and writes files with the measured errors of a screw (host/device/pitch_table.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr std::string_view kColumns = "x_mm, and forward_um with backward_um, or
 
 struct Field {
   std::string_view name;  ///< without the unit
-  double mm = 0.0;        ///< that one of its unit is
+  double mm = 0.0;        ///< size of the column's unit, mm
 };
 
 class PitchFile {
@@ -78,7 +78,7 @@ class PitchFile {
     return found == columns_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns_.begin()));
   }
 
-  /// In parts of a count.
+  /// Converts to whole 2^-16 counts.
   std::int32_t whole(std::string_view what, double per_count, double most) const {
     const std::size_t place = *place_of(what);
     const auto value = parse_number(fields_[place]);

@@ -16,7 +16,7 @@ namespace {
 using firmware::Message;
 using firmware::MessageType;
 
-/// Two erases of the largest sector, as a save may take.
+/// A save may take two erases of the largest sector.
 constexpr std::chrono::milliseconds kErasePatience{5000};
 
 template <typename Payload>

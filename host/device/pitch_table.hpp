@@ -1,4 +1,4 @@
-// A board's tables of pitch errors, in the board and as files.
+// Tables of pitch errors, in the board and in files.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ PitchPoints parse_pitch(std::string_view text, std::string_view name, double cou
 /// Text that parse_pitch() reads back within half of 2^-16 counts.
 std::string format_pitch(const PitchPoints& points, double count_mm);
 
-/// Travel of a count, mm.
+/// Travel per encoder count, mm.
 double count_mm_of(const firmware::ParameterValues& values, std::size_t axis);
 
 PitchPoints read_pitch(BoardClient& board, std::uint8_t axis);

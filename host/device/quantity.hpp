@@ -1,4 +1,4 @@
-// Numbers with a unit, as on a command line.
+// Parses numbers with a unit, for the command line.
 #pragma once
 
 #include <optional>

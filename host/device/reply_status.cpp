@@ -69,7 +69,7 @@ std::string refusal_text(const firmware::RefusedImagePayload& refused) {
     case firmware::ImageRefusal::no_header:
       return "it arrived without its header: send it again";
     case firmware::ImageRefusal::wrong_crc:
-      return "its checksum does not match: it is damaged, or was on its way; send it again";
+      return "its checksum does not match: it is damaged, or was damaged in the transfer; send it again";
     case firmware::ImageRefusal::not_announced:
       return "another image arrived than was announced: is another program updating the board?";
     case firmware::ImageRefusal::none:
@@ -90,7 +90,7 @@ bool is_of_update(const Message& reply) {
   give_up(ExitCode::bad_input, fmt::format("the board refuses the image: {}", refusal_text(refused)));
 }
 
-/// "axis y: " where the reply names the axis that refuses.
+/// "axis y: " if the reply names the axis that refuses; otherwise empty.
 std::string refusing_axis(const Message& reply) {
   firmware::RefusedAxisPayload refused;
   const bool is_named = reply.type == firmware::reply_to(MessageType::enable) && reply.get(refused) &&

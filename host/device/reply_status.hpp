@@ -1,4 +1,4 @@
-// The meaning of a board's refusals, in words.
+// Error messages for a board's refusals.
 #pragma once
 
 #include <string>

@@ -56,7 +56,7 @@ Channel channel_called(std::string_view name, sim::DriveKind kind) {
                 fmt::format("no signal is called {}; there are {}, fault and motion", name, fmt::join(names, ", ")));
 }
 
-/// "20um", "0.5V"; "12" where the channel's name tells the unit, or there is none.
+/// "20um", "0.5V"; "12" if the channel's name contains the unit, or the channel has none.
 double level_of(std::string_view text, sim::DriveKind kind, bool has_unit_in_name) {
   const std::optional<Quantity> written = parse_quantity(trim_blanks(text));
   const std::string_view unit = written ? trim_blanks(written->unit) : "";
@@ -90,7 +90,7 @@ std::uint32_t level_word(const BoardTrigger& trigger, const firmware::AxisValues
   return whole(trigger.level / static_cast<double>(one) * (1 << 21));
 }
 
-/// Converts half words to the words of a stream: the missing upper half is continued from row to row.
+/// Extends half words to the words of a stream: the missing upper half is tracked from row to row.
 class Widener {
  public:
   explicit Widener(std::int64_t counts_at_trigger) : counts_(static_cast<std::uint32_t>(counts_at_trigger)) {}
@@ -137,7 +137,7 @@ bool is_complete(const firmware::TriggerStatePayload& state) {
   return state.phase == static_cast<std::uint8_t>(TriggerPhase::complete);
 }
 
-/// The board's capture must be the requested one: another program may have armed it again.
+/// Throws if the board's capture is not the requested one, because another program may have armed it again.
 void require_own(const firmware::TriggerStatePayload& state, const firmware::TriggerRequest& asked) {
   const bool is_same = state.channels == asked.channels && state.wide == asked.wide && state.every == asked.every &&
                        state.kind == asked.kind && state.axis == asked.axis;
@@ -148,7 +148,7 @@ void require_own(const firmware::TriggerStatePayload& state, const firmware::Tri
                   "the board holds another capture than was asked for: another program has armed it");
 }
 
-/// It must also stay the same while its rows are fetched.
+/// Throws if the capture changed while its rows were fetched.
 void require_unchanged(BoardClient& board, const firmware::TriggerStatePayload& before) {
   const firmware::TriggerStatePayload now = board.trigger_state();
   if (std::memcmp(&now, &before, sizeof now) != 0)
@@ -162,7 +162,7 @@ Capture capture_of(BoardClient& board, const firmware::TriggerStatePayload& stat
   ChannelScale scale(values.axis(settings.axis), board.identify().fixed_point != 0, counts);
   const std::vector<std::uint16_t> half = fetch(board, state);
   require_unchanged(board, state);
-  // The rows before the trigger go back from where it was.
+  // Rows before the trigger are extended backwards from the position at the trigger.
   Widener widen(counts);
   Capture capture;
   capture.row_period_s = static_cast<double>(state.every) / static_cast<double>(values.get<"control.rate">());
@@ -231,7 +231,7 @@ BoardTrigger parse_board_trigger(std::string_view text, sim::DriveKind kind) {
                               text));
   }
   if (trigger.axis == firmware::kAnyAxis && trigger.kind != TriggerKind::fault)
-    throw Failure(ExitCode::usage, fmt::format("{}: only a fault may be any axis's", text));
+    throw Failure(ExitCode::usage, fmt::format("{}: only a fault may be that of any axis", text));
   return trigger;
 }
 
@@ -275,7 +275,7 @@ Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& setti
     require_own(state, request);
     if (is_complete(state)) {
       Capture capture = capture_of(board, state, wanted);
-      board.arm_trigger({});  // releases it, so that it can be read again
+      board.arm_trigger({});  // disarms the board, so that its capture can be read again
       return capture;
     }
     const bool is_waiting = state.phase == static_cast<std::uint8_t>(TriggerPhase::waiting);

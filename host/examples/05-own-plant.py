@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Your own machine behind the simulated board (axis-plant/1): a screw with friction and cogging, by its own equations.
-README.md has a command to try it."""
+"""Your own machine for the simulated board (axis-plant/1): a screw with friction and cogging. README.md has a command
+to try it."""
 import math
 import random
 import sys
 
 KA_KT, J, B, LEAD = 3.1, 0.0081, 0.031, 1.5915494309189535  # Nm/V, kg m^2, Nm s/rad, mm/rad
 COULOMB, STATIC, FADE, COGGING, PITCH = 2.1, 2.6, 1.5, 0.6, 4.0  # Nm, Nm, rad/s, Nm, mm
-STEPS = 20  # of the integrator in a period
+STEPS = 20  # integration steps per period
 
 
 def advance(x, w, volts, dt):
@@ -17,7 +17,7 @@ def advance(x, w, volts, dt):
         return x, 0.0
     way = math.copysign(1, w if w else drive)
     new = w + dt / J * (drive - B * w - dry * way)
-    new = 0.0 if w * new < 0 else new  # it stops before it turns round
+    new = 0.0 if w * new < 0 else new  # it stops before it reverses
     return x + LEAD * dt * (w + new) / 2, new
 
 

@@ -38,7 +38,7 @@ class ExternalAxis : public sim::ForeignMotion {
 ExternalPlant::ExternalPlant(const std::string& command, std::size_t axes, double period_s,
                              std::chrono::milliseconds patience)
     : program_(command), period_s_(period_s), patience_(patience), commands_V_(axes), readings_(axes, {0.0, 0.0}) {
-  constexpr std::chrono::seconds kStart{30};  // interpreters and their libraries
+  constexpr std::chrono::seconds kStart{30};  // interpreters load their libraries
   const std::string answer =
       program_.ask(plant_greeting(axes, period_s), std::max<std::chrono::milliseconds>(patience, kStart));
   if (answer != "ready" && answer != "ready\r")

@@ -1,4 +1,4 @@
-// An external program as the machine, in lockstep with the board.
+// An external program that simulates the machine, in lockstep with the board.
 #pragma once
 
 #include <chrono>
@@ -17,13 +17,13 @@ namespace host {
 /// commands of all axes.
 class ExternalPlant {
  public:
-  /// Starts the program and waits until it is ready. `period_s`: of its lines; `patience`: for an answer, longer for
-  /// the first. Throws Failure with its last words: no_such_device (it ended), time_out, protocol (an unexpected
-  /// answer). Every later exchange throws the same.
+  /// Starts the program and waits until it is ready. `period_s`: period of its lines; `patience`: time-out for an
+  /// answer, longer for the first. Throws Failure with the program's last output: no_such_device (it ended), time_out,
+  /// protocol (an unexpected answer). Every later exchange throws the same.
   ExternalPlant(const std::string& command, std::size_t axes, double period_s, std::chrono::milliseconds patience);
 
-  /// One of its axes, which keeps the program alive. A board whose control period is not a multiple of the program's
-  /// period gets Failure(bad_input).
+  /// One axis of the program; it keeps the program running. Throws Failure(bad_input) if the board's control period is
+  /// not a multiple of the program's period.
   static std::shared_ptr<sim::ForeignMotion> axis(const std::shared_ptr<ExternalPlant>& plant, std::size_t index);
 
  private:
@@ -36,7 +36,7 @@ class ExternalPlant {
   std::chrono::milliseconds patience_;
   std::uint64_t periods_ = 0;
   std::vector<std::optional<double>> commands_V_;
-  std::vector<sim::ForeignReading> readings_;  ///< at rest at 0 before the first exchange
+  std::vector<sim::ForeignReading> readings_;  ///< 0, at rest, before the first exchange
 };
 
 /// A drive described by its data sheet only; the program simulates its effects.

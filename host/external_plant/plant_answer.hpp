@@ -1,10 +1,9 @@
-// The lines between the board and a plant that is another program: `axis-plant/1`.
+// The lines between the board and an external plant program: `axis-plant/1`.
 //
 //   to the program:  axis-plant/1 AXES PERIOD_S        its answer:  ready
 //                    K U|off …        (an axis each)                K X W|- …   (two fields an axis)
-//
-// U: the converter's voltage from now on; off: the drive is disabled. X: position at the encoder when the period ends,
-// mm or m; W: what the tachometer shows, rad/s or m/s. End of input: stop.
+// U: voltage of the converter from now on; off: the drive is disabled. X: encoder position at the end of the period, mm
+// or m; W: tachometer reading, rad/s or m/s. The program stops at the end of its input.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +17,13 @@
 
 namespace host {
 
-/// Upper bound of position and speed, mm (m), rad/s (m/s), beyond any machine.
+/// Upper bound of position and speed, mm (m), rad/s (m/s); larger than in any machine.
 inline constexpr double kMostOfPlant = 1e9;
 
 /// The first line, with its line feed.
 std::string plant_greeting(std::size_t axes, double period_s);
 
-/// The line of period `k`, with its line feed; an empty command: the drive is disabled.
+/// The line of period `k`, with its line feed. An empty command means that the drive is disabled.
 std::string plant_line(std::uint64_t k, std::span<const std::optional<double>> commands_V);
 
 /// Content of such a first line.

@@ -36,7 +36,7 @@ bool wait_for(int descriptor, short event, steady_clock::time_point deadline) {
   }
 }
 
-/// A readable text: control characters as '?', and no longer than a line.
+/// The text for a message: control characters as '?', limited to one line.
 std::string shown(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
@@ -92,7 +92,7 @@ std::string PlantProgram::complaint(const std::string& what) const {
 void PlantProgram::fail_ended() {
   int status = 0;
   pid_t ended = 0;
-  for (int round = 0; round < 20 && ended == 0; ++round) {  // its output may close a moment before it ends
+  for (int round = 0; round < 20 && ended == 0; ++round) {  // its output may close shortly before it ends
     ended = ::waitpid(child_, &status, WNOHANG);
     if (ended == 0) std::this_thread::sleep_for(milliseconds(10));
   }
@@ -110,7 +110,7 @@ void PlantProgram::send(std::string_view text, steady_clock::time_point deadline
       text.remove_prefix(static_cast<std::size_t>(sent));
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
       if (!wait_for(to_, POLLOUT, deadline))
-        throw Failure(ExitCode::time_out, complaint("does not read what it is sent (--patience gives it longer)"));
+        throw Failure(ExitCode::time_out, complaint("does not read its input (--patience gives it longer)"));
     } else if (errno != EINTR) {
       fail_ended();
     }

@@ -1,4 +1,4 @@
-// Another program that answers line by line.
+// Runs another program that answers line by line.
 #pragma once
 
 #include <sys/types.h>
@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// Runs in its own process group, so that a Ctrl-C for this program leaves it running. It shares this program's
-/// standard error. Its input ends with this object; if it does not end within half a second, it is killed.
+/// Runs in its own process group, so that Ctrl-C for this program does not stop it. It shares this program's standard
+/// error. The destructor closes its input and kills it if it does not end within 0.5 s.
 class PlantProgram {
  public:
   /// `command`: for /bin/sh. Throws Failure(no_such_device) if it cannot be started.
@@ -33,7 +33,7 @@ class PlantProgram {
 
   std::string command_, buffer_, last_;
   pid_t child_ = -1;
-  int to_ = -1, from_ = -1;  ///< its input (a socket: a program that has gone raises no signal) and its output
+  int to_ = -1, from_ = -1;  ///< its input (a socket: writing to an ended program raises no signal) and its output
 };
 
 }  // namespace host

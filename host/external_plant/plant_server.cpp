@@ -13,7 +13,7 @@
 namespace host {
 
 namespace {
-constexpr double kFinest = 1e-9;  ///< of Plant::encoder_counts, where the data sheet has no resolution
+constexpr double kFinest = 1e-9;  ///< resolution of Plant::encoder_counts if the data sheet has none
 }
 
 void serve_plant(const std::vector<sim::DriveDescription>& drives, std::uint64_t seed, std::istream& in,

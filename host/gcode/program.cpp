@@ -17,11 +17,10 @@ namespace {
 
 constexpr double kInch_mm = 25.4;
 constexpr double kUsualTolerance_mm = 0.05;
-// As in LinuxCNC: an arc's radii at its beginning and end may differ by this length, or by a thousandth.
+// An arc's radii at its beginning and end may differ by this length or by 0.1 %, as in LinuxCNC.
 constexpr double kRadiusTolerance_mm = 0.0127, kRadiusShare = 0.001;
-constexpr double kFarthest_mm = 1e6;  ///< beyond any machine, and every sum is still exact enough
+constexpr double kFarthest_mm = 1e6;  ///< larger than any machine, and sums are still exact enough
 
-/// The words of one line, in their order.
 struct Word {
   char letter;
   double value;
@@ -271,7 +270,7 @@ class Reader {
     append(move, curve.length() / move.feed_mm_s);
   }
 
-  /// Along a line; without an override the plan alone limits it.
+  /// Speed of a rapid along a line. Without an override only the plan limits it.
   double rapid_mm_s(const PathCurve& line) const {
     if (!(machine_.rapid_share < 1.0) || !(line.length() > 0.0)) return 1e9;
     const PathPoint way = (line.end() - line.begin()).cwiseAbs();
@@ -290,7 +289,7 @@ class Reader {
   }
 
   void go_home() {
-    // Through the point that the line names, as in the standard.
+    // G28 moves through the point on the line, as in the standard.
     const PathPoint by = target();
     if ((by - at_).norm() > 0.0) add(PathCurve::line(at_, by), true);
     PathPoint home = machine_.home;
@@ -325,7 +324,7 @@ class Reader {
   void probe(const PathPoint& to) {
     if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");
     const bool is_certain = !machine_.begins_anywhere && program_.probes.size() <= machine_.probed.size();
-    if (is_certain && !((to - at_).norm() > 0.0)) fail("G38 leads nowhere: its target is where the axes stand");
+    if (is_certain && !((to - at_).norm() > 0.0)) fail("G38 has no motion: its target is the present position");
     add(PathCurve::line(at_, to), false);
     program_.moves.back().kind = PathMoveKind::probe;
     probe_.move = program_.moves.size() - 1;
@@ -349,16 +348,16 @@ class Reader {
     else if (angle <= 0.0)
       angle += 2.0 * std::numbers::pi;
     add(PathCurve::arc(at_, centre, sense * angle, to.z()), false);
-    // If the radii at beginning and end differ slightly, a line closes the gap, which is below the tolerance of arcs.
+    // If the radii at both ends differ slightly, a line closes the gap, which is below the tolerance of arcs.
     const PathPoint reached = program_.moves.back().curve.end();
     if ((reached - to).norm() > 1e-9) program_.moves.back().curve = closed_arc(centre, sense * angle, to);
   }
 
-  /// The same arc about a centre that is as far from both of its ends.
+  /// The same arc about a centre with equal distance from both ends.
   PathCurve closed_arc(const PathPoint& centre, double angle, const PathPoint& to) const {
     const double dx = to.x() - at_.x(), dy = to.y() - at_.y(), chord_2 = dx * dx + dy * dy;
     if (!(chord_2 > 0.0)) return PathCurve::arc(at_, centre, angle, to.z());
-    // The foot of the old centre on the line that halves the chord.
+    // Projects the old centre onto the perpendicular bisector of the chord.
     const double mx = (at_.x() + to.x()) / 2.0, my = (at_.y() + to.y()) / 2.0;
     const double along = ((centre.x() - mx) * dx + (centre.y() - my) * dy) / chord_2;
     const PathPoint moved(centre.x() - along * dx, centre.y() - along * dy, 0.0);
@@ -394,8 +393,8 @@ class Reader {
     if (half > radius * (1.0 + kRadiusShare) && half - radius > kRadiusTolerance_mm)
       fail(fmt::format("the arc's ends are {:.4f} mm apart, more than twice its radius", chord));
     const double height = std::sqrt(std::max(radius * radius - half * half, 0.0));
-    // Seen along the chord: counter-clockwise the centre of the shorter arc is on the left; R below 0 is the longer
-    // arc.
+    // Seen along the chord, the centre of the shorter counter-clockwise arc is on the left. R below 0 selects the
+    // longer arc.
     const double side = (motion_ == Motion::counter_clockwise) == (*block_.radius > 0.0) ? 1.0 : -1.0;
     return {(at_.x() + to.x()) / 2.0 - side * height * dy / chord,
             (at_.y() + to.y()) / 2.0 + side * height * dx / chord, 0.0};

@@ -1,5 +1,4 @@
-// G-code (RS274/NGC, NIST IR 6556, as LinuxCNC reads it) as far as a machine of two or three axes without a spindle
-// needs it.
+// G-code (RS274/NGC, NIST IR 6556, LinuxCNC's dialect) for a machine with two or three axes and no spindle.
 #pragma once
 
 #include <string>
@@ -10,21 +9,21 @@
 
 namespace host {
 
-/// Properties of the machine that a program may use.
+/// Properties of the machine on which a program runs.
 struct GcodeMachine {
   std::size_t axes = 2;                ///< X, Y and, with 3, Z
-  PathPoint home = PathPoint::Zero();  ///< that G28 goes to, mm
-  bool begins_anywhere = false;        ///< the start position is unknown: arcs are not checked before a line has set it
-  double feed_share = 1.0;             ///< override of the feeds F, > 0; limits of axes hold anyway
+  PathPoint home = PathPoint::Zero();  ///< target of G28, mm
+  bool begins_anywhere = false;        ///< the start position is unknown: arcs are not checked until a line has set it
+  double feed_share = 1.0;             ///< override of the feeds F, > 0; the limits of the axes still hold
   double rapid_share = 1.0;            ///< override of rapids, 0 to 1, relative to `fastest_mm_s`
-  PathPoint fastest_mm_s = PathPoint::Constant(1e9);  ///< each axis's, > 0
-  std::vector<PathPoint> probed;  ///< ends of the first probing moves; others are assumed to reach their targets
+  PathPoint fastest_mm_s = PathPoint::Constant(1e9);  ///< of each axis, > 0
+  std::vector<PathPoint> probed;  ///< ends of the first probing moves; assumes that the others reach their targets
 };
 
 /// A probing move: G38.2 to G38.5.
 struct GcodeProbe {
-  std::size_t move = 0;       ///< of the program's
-  bool is_away = false;       ///< looks for the loss of contact: G38.4, G38.5
+  std::size_t move = 0;       ///< index in the program's moves
+  bool is_away = false;       ///< seeks the loss of contact: G38.4, G38.5
   bool must_succeed = false;  ///< otherwise the program is in error: G38.2, G38.4
   int tenths() const { return is_away ? (must_succeed ? 4 : 5) : (must_succeed ? 2 : 3); }
 };
@@ -32,8 +31,8 @@ struct GcodeProbe {
 struct GcodeProgram {
   std::vector<PathMove> moves;
   std::vector<GcodeProbe> probes;
-  std::vector<std::size_t> rapid_lines;  ///< ascending; a line moves by rapids or by feeds, never by both
-  std::size_t lines = 0;                 ///< of the text
+  std::vector<std::size_t> rapid_lines;  ///< ascending; a line contains either rapids or feeds
+  std::size_t lines = 0;                 ///< number of lines of the text
   bool is_absolute = false;              ///< it contains an absolute position
 };
 

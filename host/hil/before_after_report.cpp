@@ -15,7 +15,7 @@ struct Measured {
   double before = 0.0, after = 0.0;
 };
 
-/// The largest errors; the first is in the page's headline.
+/// The largest errors; the first one is in the headline of the page.
 std::vector<Measured> largest_errors(const ScenarioRun& before, const ScenarioRun& after) {
   std::vector<Measured> all;
   if (!before.contour_um.empty() && !after.contour_um.empty())

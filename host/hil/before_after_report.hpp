@@ -1,4 +1,4 @@
-// One page of a scenario that was run twice: with its own controllers and with others.
+// One page with two runs of a scenario: with its own controllers and with others.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Deviation from a circle, magnified, as in ISO 230-4.
+// Magnified deviation from a circle, as in ISO 230-4.
 #pragma once
 
 #include <optional>

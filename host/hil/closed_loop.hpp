@@ -1,4 +1,4 @@
-// The control core on the simulated board, recorded row by row.
+// Runs the control core on the simulated board and records it row by row.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 namespace host {
 
 /// One axis in closed loop with a plant made of `machine`, enabled and at rest at travel 0. Every function throws
-/// Failure(device_fault) when the axis faults; travel in mm and speeds in mm/s (m, m/s for a linear drive).
+/// Failure(device_fault) if the axis faults; travel in mm and speeds in mm/s (m, m/s for a linear drive).
 class ClosedLoop {
  public:
-  /// `seed` fixes the tachometer's noise. Throws Failure(bad_input) when the core rejects the parameters.
+  /// `seed` fixes the tachometer's noise. Throws Failure(bad_input) if the core rejects the parameters.
   ClosedLoop(const sim::DriveDescription& machine, const firmware::AxisParameters<float>& parameters,
              std::uint64_t seed);
 
-  /// Sets the speed reference, reached within the limits of the parameters.
+  /// Sets the target speed of the reference, which is reached within the limits of the parameters.
   void jog(double speed) { axis_.jog(static_cast<float>(speed)); }
 
   /// Starts a move within the limits; the axis must be at rest. Throws Failure(bad_input) for an unreachable target.
   void start_move_to(double travel);
 
-  /// Shifts the reference in one sample, without regard to limits.
+  /// Shifts the reference in one sample and ignores the limits.
   void step_reference(double distance);
 
   void run(double duration_s);

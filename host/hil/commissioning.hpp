@@ -15,16 +15,16 @@ namespace host {
 /// at Ku = 15 (p. 1499), the friction curve from jogs at the paper's eleven speeds (section 3.2).
 sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed);
 
-/// The open-loop steps alone, `scaling` (Ku of the paper) times its series of doublets.
+/// Only the open-loop steps: the paper's series of doublets times `scaling` (Ku of the paper).
 Record commissioning_steps(const sim::DriveDescription& machine, double scaling, std::uint64_t seed);
 
 struct CompensationSwitches {
   bool friction = false;
   bool cancellation = false;
-  bool effects = true;  ///< further effects of the model that the board can compensate
+  bool effects = true;  ///< compensate further effects of the model
 };
 
-/// Choices of a design that differ from the paper.
+/// Settings of a design that differ from the paper.
 struct LoopTuning {
   double bandwidth_Hz = DesignOptions{}.bandwidth_Hz;
   ControlFilterChoice filters;

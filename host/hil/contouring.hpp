@@ -16,12 +16,12 @@ struct ContouringRun {
   std::array<Record, hal::kAxisCount> records;
   std::array<std::vector<double>, hal::kAxisCount> tracking_um;  ///< reference minus encoder
   std::vector<double> contour_um;  ///< distance of the encoders' point from the path, >= 0; 0 before and after the path
-  double begin_s = 0.0;            ///< of the motion along the path
+  double begin_s = 0.0;            ///< beginning of the motion along the path
   double end_s = 0.0;
 
-  double worst_tracking_um(std::size_t axis) const;  ///< while following the path
+  double worst_tracking_um(std::size_t axis) const;  ///< largest error while following the path
   double worst_contour_um() const;
-  double standing_before_um() const;  ///< the larger of both axes, at rest before the path
+  double standing_before_um() const;  ///< larger error of both axes, at rest before the path
   double standing_after_um() const;
 };
 

@@ -20,8 +20,7 @@ using firmware::SupervisorState;
 
 using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
-/// Torque of the brake: twice what the paper's motor needs to overcome friction. It stops the axis from 250 mm/s in 9
-/// mm.
+/// Torque of the brake: twice the friction of the paper's motor. It stops the axis from 250 mm/s in 9 mm.
 constexpr double kBrake_Nm = 20.0;
 
 /// A drive with a tenth of the paper's friction, on the paper's screw: without current, the axis coasts for a metre.
@@ -103,22 +102,23 @@ class Trial {
   struct Stop {
     double begin_mm = 0.0, speed_mm_s = 0.0, acceleration_mm_s2 = 0.0, drop_speed_mm_s = 0.0, way_mm = 0.0;
     double top_speed_mm_s = 0.0, low_speed_mm_s = 0.0;
-    double gained_from_mm_s = 0.0, gained_to_mm_s = 0.0;  ///< where it gained most
+    double gained_from_mm_s = 0.0, gained_to_mm_s = 0.0;  ///< speeds between which the axis gained most
     bool drives = false;
     std::uint64_t begin = 0;  ///< sample
-    int driven_off = 0;       ///< samples for which the axis was driven although its enable was off
+    int driven_off = 0;       ///< samples in which the axis was driven although its enable was off
   };
 
   double speed_mm_s(std::size_t axis) const {
     return std::abs(machine_.plant(axis).truth().w) * axes_[axis].drive.data.lead;
   }
 
-  /// Computed with the reference's own acceleration.
+  /// Gain of speed that follows from the acceleration of the reference.
   static double usual_gain_mm_s(const Stop& stop) {
     return stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
   }
 
-  /// Computed with the true drive and brake, along the ramp; and again from the speed after a second fault.
+  /// Stopping distance and time by formula, with the true drive and brake, along the ramp and from the speed after a
+  /// second fault.
   StoppingWay by_formula(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     StoppingFigures figures = stopping_figures(axes_[axis].drive, std::max(stop.top_speed_mm_s, 1.0),
@@ -137,7 +137,7 @@ class Trial {
     return {before.travel - without.travel + after.travel, before.time_s - without.time_s + after.time_s};
   }
 
-  /// Time for which the whole command and the weight would have to act to make the axis as fast as it was at most.
+  /// Time in which the full command and the weight would accelerate the axis to its highest speed.
   double gain_s(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     const sim::DriveDescription& drive = axes_[axis].drive;
@@ -190,19 +190,19 @@ class Trial {
       axes()[i].jog(static_cast<float>((i == 0 ? sense : -sense) * trial_.speed_mm_s));
   }
 
-  /// Samples of a jog before it reverses: enough to reach its speed from the opposite one.
+  /// Samples of a jog before it reverses: enough to reach the speed from the opposite speed.
   int stretch() const {
     return 400 + static_cast<int>(2000.0 * std::abs(trial_.speed_mm_s) / trial_.acceleration_mm_s2);
   }
 
-  /// A motion both ways, which shows faults that are hidden at rest.
+  /// Moves in both directions, which reveals faults that are hidden at rest.
   void keep_moving(int k) {
     constexpr int kPatience = 1000;
     const bool path_runs = place_ < path_.size();
     if (trial_.motion == TrialMotion::starting && !all_enabled() && k < kPatience) return;
     if (path_runs || (trial_.motion == TrialMotion::move && k < kPatience)) return;
     if (trial_.motion == TrialMotion::stopping && k < kPatience / 2) return;
-    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what shows only when an axis drops
+    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // some faults are found only when the axis is disabled
     enable();
     if (k % stretch() == 100) jog(k / stretch() % 2 == 0 ? 1.0 : -1.0);
   }
@@ -223,7 +223,7 @@ class Trial {
       fault_ = axes()[i].fault();
       for (std::size_t j = 0; j < hal::kAxisCount; ++j) {
         must_latch_[j] =
-            j == i || (was_on_[j] && axes()[j].state() != SupervisorState::ready);  // it may stand just then
+            j == i || (was_on_[j] && axes()[j].state() != SupervisorState::ready);  // it may stand at that moment
         const double gained = (speed_mm_s(j) - speed_before[j]) / machine_.sample_period_s();
         stops_[j] = {.begin_mm = machine_.plant(j).truth().x,
                      .speed_mm_s = speed_mm_s(j),
@@ -237,8 +237,8 @@ class Trial {
     if (fault_seen_) follow_stop();
   }
 
-  /// For an amplifier that drives without its enable, only the time can be stated. Its axis coasts from the place where
-  /// the power is cut.
+  /// For an amplifier that drives without its enable, only the time is specified. The axis coasts from the position at
+  /// which the power is cut.
   void follow_stop() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const double x = machine_.plant(i).truth().x;

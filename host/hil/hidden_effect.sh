@@ -1,6 +1,6 @@
 #!/bin/sh
-# Worked example: a circle on a machine with an effect that the model lacks; find it, compensate it, run again.
-# Usage: hidden_effect.sh AXISTOOL FOLDER
+# Worked example: a circle on a machine with an effect that the model lacks. Finds the effect, compensates it and runs
+# the circle again. Usage: hidden_effect.sh AXISTOOL FOLDER
 set -eu
 axistool=$1
 folder=$2

@@ -39,12 +39,12 @@ TimePlot prediction_plot(const Record& steps, const sim::DriveDescription& machi
   return plot;
 }
 
-/// An estimate as a function of the scaling of the steps, by both methods.
+/// A plot of an estimate over the scaling of the steps, by both methods.
 struct EstimatePlot {
   const char* title;
   Axis quantity;
   Estimate (*value)(const RigidEstimate& estimate);
-  bool of_simple;  ///< simple least squares gives it, too
+  bool of_simple;  ///< simple least squares also estimates it
 };
 
 const EstimatePlot kEstimates[] = {

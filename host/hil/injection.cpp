@@ -33,7 +33,7 @@ void clear(Machine& machine, std::size_t) {
 using hal::pc::AxisDefects;
 using Needs = InjectionInfo::Needs;
 
-/// A fault that is there or not: it has no size.
+/// Injects a fault without a size: it is present or not.
 template <auto defect>
 InjectionInfo flag(const char* kind, const char* what, Needs needs, std::vector<AxisFault> names) {
   constexpr bool of_board = std::is_same_v<decltype(defect), bool BoardDefects::*>;

@@ -12,11 +12,11 @@ namespace host {
 struct InjectionInfo {
   std::string_view kind;  ///< name in scenario files
   std::string_view what;
-  std::string_view unit;  ///< of the value; "" where it has none
+  std::string_view unit;  ///< unit of the value; "" if it has none
   double usual = 0.0;     ///< value if the scenario gives none
   double least = 0.0;     ///< smallest magnitude that must be detected
-  bool of_board = false;  ///< concerns both axes
-  /// Shows only with optional parts of a machine, or only in that phase: see FaultTrial.
+  bool of_board = false;  ///< affects both axes
+  /// Requirement for the fault to be found: an optional part of the machine or a phase, see FaultTrial.
   enum class Needs { nothing, ready_input, brake, open_loop } needs = Needs::nothing;
   /// The faults that identify this cause.
   std::vector<firmware::AxisFault> named_by;

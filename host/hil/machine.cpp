@@ -41,7 +41,7 @@ Machine::Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint
       throw Failure(ExitCode::bad_input, fmt::format("axis {} rejects its parameters (parameter error {})",
                                                      kAxisNames[i], static_cast<int>(error)));
     }
-    axes_[i].set_position(0);  // a machine starts at its plants' positions
+    axes_[i].set_position(0);  // counts start at the initial positions of the plants
   }
 }
 
@@ -64,7 +64,7 @@ std::array<firmware::Increment, hal::kAxisCount> Machine::runaway() {
     if (defects.runaway_mm_s2[i] == 0.0) continue;
     runaway_mm_s_[i] += defects.runaway_mm_s2[i] * period_s_;
     const double counts = runaway_mm_s_[i] * period_s_ / plants_[i]->data().encoder_resolution;
-    constexpr double kMostCounts = 16'000.0;  // the references' range, motion_limits.hpp
+    constexpr double kMostCounts = 16'000.0;  // range of the references, motion_limits.hpp
     added[i] = std::llround(std::clamp(counts, -kMostCounts, kMostCounts) * static_cast<double>(firmware::kOneCount));
   }
   return added;

@@ -1,4 +1,4 @@
-// Two simulated drives on the simulated board, with the firmware's axes in closed loop, sample by sample.
+// Two simulated drives on the simulated board, controlled by the firmware's axes, sample by sample.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace host {
 
 using MachineGroup = firmware::AxisGroup<float, hal::pc::FaultyAxis, hal::kAxisCount>;
 
-/// One axis of a machine: the true drive, and its controller's parameters.
+/// One axis of a machine: the true drive and the parameters of its controller.
 struct MachineAxis {
   sim::DriveDescription drive;
   firmware::AxisParameters<float> parameters;
@@ -37,7 +37,8 @@ struct BoardDefects {
   std::array<double, hal::kAxisCount> runaway_mm_s2{};
 };
 
-/// Deterministic: equal arguments and calls give equal bits. Not copyable, because the axes refer to their hardware.
+/// Deterministic: equal arguments and calls give bit-identical results. Not copyable, because the axes refer to their
+/// hardware.
 class Machine {
  public:
   /// `seed` fixes the noise of all sensors. Throws Failure(bad_input) naming the axis whose parameters are refused.
@@ -45,11 +46,11 @@ class Machine {
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 
-  /// One control period, then the machine runs until the next.
+  /// Runs one control period, and the machine until the next one.
   void step();
   void step_with(const std::array<firmware::Increment, hal::kAxisCount>& increments);
 
-  /// The control interrupt is missing for this many periods; the machine continues with the last D/A codes.
+  /// Skips the control interrupt for this many periods; the machine continues with the last D/A codes.
   void lose_periods(int periods);
 
   /// Runs the self-test, then enables both axes. Throws Failure(device_fault) if an axis does not become enabled.
@@ -61,7 +62,7 @@ class Machine {
   hal::pc::FaultyAxis const& wires(std::size_t axis) const { return *wires_[axis]; }
   const sim::Plant& plant(std::size_t axis) const { return *plants_[axis]; }
   double sample_period_s() const { return period_s_; }
-  /// Since the machine was created.
+  /// Samples since the machine was created.
   std::uint64_t samples() const { return samples_; }
 
   BoardDefects defects;

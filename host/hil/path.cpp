@@ -115,7 +115,7 @@ double Path::distance_to(const PlanePoint& point) const {
 
 namespace {
 
-/// Nodes as from the host's planner, but with limits along the path, as in the paper.
+/// Nodes in the form of the host's planner, but with limits along the path, as in the paper.
 PlannedPath plan_along(const Path& path, const PathLimits& limits, double sample_period_s) {
   PlannedPath planned;
   double length = 0.0;
@@ -146,7 +146,7 @@ PlannedPath plan_along(const Path& path, const PathLimits& limits, double sample
   };
   add(state, 0.0);
   for (const SpeedPhase& phase : speed_profile({whole})) {
-    // The acceleration jumps where a line meets an arc: short pieces keep the polynomials close to it.
+    // The acceleration jumps where a line meets an arc. Short pieces keep the polynomials close to it.
     constexpr double kPiece_s = 0.002;
     const auto parts = std::max(1, static_cast<int>(phase.duration_s / kPiece_s));
     for (int k = 1; k <= parts; ++k)
@@ -163,7 +163,7 @@ PlannedPath plan_along(const Path& path, const PathLimits& limits, double sample
   return planned;
 }
 
-/// Stands for the board's axes, which the path follower moves.
+/// Replaces the board's axes, which the path follower moves.
 struct LedAxes {
   struct Axis {
     firmware::Increment increment = 0;
@@ -198,7 +198,7 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
 
   firmware::PathFollower<2, 32> follower;
   using Node = firmware::PathNode<2>;
-  // The axes of a reference have no limits: they could reach the feed within one sample.
+  // The axes of this reference have no limits: they could reach the feed within one sample.
   const auto unlimited = [&](std::size_t axis) {
     const auto feed = static_cast<float>(limits.feed * sample_period_s / count_mm[axis]);
     return firmware::PathLimits{feed, feed, feed};

@@ -18,7 +18,7 @@ struct PlanePoint {
 /// A straight line (angle 0), or an arc about `centre` that turns by `angle` (rad, positive counter-clockwise).
 struct PathSegment {
   PlanePoint begin;
-  PlanePoint end;  ///< of a line
+  PlanePoint end;  ///< end point of a line
   PlanePoint centre;
   double angle = 0.0;
 
@@ -36,7 +36,7 @@ class Path {
   /// ones clockwise.
   static Path circle(double radius_mm, int turns = 1);
   /// Starts and ends at the origin, the middle of the lower side; corners are quarter circles.
-  /// Throws Failure(bad_input) where the corners do not fit the side.
+  /// Throws Failure(bad_input) if the corners do not fit the side.
   static Path rounded_square(double side_mm, double corner_radius_mm);
 
   double length() const;
@@ -50,16 +50,16 @@ class Path {
   std::vector<PathSegment> segments_;
 };
 
-/// Along the path, mm/s, mm/s^2, mm/s^3.
+/// Limits along the path, mm/s, mm/s^2, mm/s^3.
 struct PathLimits {
   double feed = 170.0;           // the paper, p. 1508
   double acceleration = 2000.0;  // likewise
   double jerk = 50'000.0;        // likewise
 };
 
-/// Increments of both axes, sample by sample, from rest to rest, as the board's path follower computes them from nodes
-/// that are jerk-limited along the path; exact at its end. Throws Failure(bad_input) for limits outside the references'
-/// range.
+/// Increments of both axes, sample by sample, from rest to rest. The board's path follower computes them from nodes
+/// that are jerk-limited along the path. The end position is exact. Throws Failure(bad_input) for limits outside the
+/// references' range.
 std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, const PathLimits& limits,
                                                             double sample_period_s,
                                                             const std::array<double, 2>& count_mm);

@@ -1,4 +1,4 @@
-// Records a machine's run: one record per axis, as a board would.
+// Records a machine's run as a board does: one record per axis.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class Recorder {
 
   std::size_t size() const { return records_[0].size(); }
   const Record& record(std::size_t axis) const { return records_[axis]; }
-  /// Reference minus encoder, µm, with the middle of the encoder's step.
+  /// Reference minus encoder, µm; an encoder count is taken at the middle of its step.
   std::vector<double> tracking_error_um(std::size_t axis) const;
 
  private:

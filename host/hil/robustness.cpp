@@ -65,7 +65,7 @@ firmware::AxisParameters<float> with_controller(firmware::AxisParameters<float> 
   parameters.zero_phase_feedforward_on = controller >= 1;
   parameters.friction_feedforward_on = controller >= 2;
   parameters.disturbance_cancellation_on = controller >= 3;
-  if (!parameters.friction_feedforward_on) {  // they shape it
+  if (!parameters.friction_feedforward_on) {  // these effects change the friction feed-forward
     parameters.compensation.presliding.on = false;
     parameters.compensation.position_friction_on = false;
   }
@@ -111,7 +111,8 @@ Table table_of(const Robustness& found) {
   Table table;
   table.title = "Contour error, µm: largest (RMS)";
   table.caption = fmt::format(
-      "Circle of {:g} mm at {:g} mm/s, mean of {} runs. Each column has all that stands left of it; the machine "
+      "Circle of {:g} mm at {:g} mm/s, mean of {} runs. Each column adds one function to the controller left of it; "
+      "the machine "
       "changes, "
       "its controller does not.",
       found.options.radius_mm, found.options.feed_mm_s, kSeeds);
@@ -128,7 +129,7 @@ Table table_of(const Robustness& found) {
   return table;
 }
 
-/// The change that costs the complete controller most.
+/// Names the change that increases the error of the complete controller most.
 Verdict verdict_of(const Robustness& found) {
   const double now = unchanged(found).by_controller.back().most_um;
   double most = -1.0;

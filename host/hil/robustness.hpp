@@ -1,5 +1,5 @@
-// How much the contour error grows where a machine differs from the model of its controller: the more a feed-forward
-// cancels, the more it depends on the model (Erkorkmaz & Altintas 2001, p. 1487; Pritschow and Philipp).
+// Contour error if a machine differs from the model of its controller. The more a feed-forward cancels, the more it
+// depends on the model (Erkorkmaz & Altintas 2001, p. 1487; Pritschow and Philipp).
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 
 namespace host {
 
-/// Controllers, each with all that the one before has.
+/// Controllers; each adds one function to the previous one.
 inline constexpr std::array kControllers = {"feedback", "+ ZPETC", "+ friction", "+ cancellation"};
 
 struct RobustnessAxis {
-  sim::DriveDescription drive;  ///< as the controller believes it to be
+  sim::DriveDescription drive;  ///< the controller's model of the drive
   firmware::AxisParameters<float> parameters;
 };
 using RobustnessMachine = std::array<RobustnessAxis, hal::kAxisCount>;
 
-/// An axis with the drive and the board's parameters in `file`; without a file with the design's defaults. Throws what
-/// put_file() and design_axis() throw, and Failure(bad_input) for a linear drive, or one without encoder steps.
+/// An axis with this drive and the board parameters in `file`; without a file, a design with defaults. Throws as
+/// put_file() and design_axis(), and Failure(bad_input) for a linear drive or a drive without encoder steps.
 RobustnessAxis robustness_axis(const sim::DriveDescription& drive, const std::string& file);
 
 struct RobustnessOptions {
@@ -33,10 +33,10 @@ struct RobustnessOptions {
   std::array<bool, hal::kAxisCount> differs = {true, true};  ///< axes whose drives differ from their models
 };
 
-/// Contour error of one circle from rest to rest, mean of several seeds.
+/// Contour error of one circle from rest to rest, averaged over several seeds.
 struct ContourFigures {
   double most_um = 0.0, rms_um = 0.0;  ///< NaN after a fault
-  std::string fault;                   ///< that ended a run; empty if none
+  std::string fault;                   ///< fault that ended a run; empty if none
 };
 
 struct RobustnessPoint {
@@ -44,10 +44,10 @@ struct RobustnessPoint {
   std::array<ContourFigures, kControllers.size()> by_controller;
 };
 
-/// One quantity of the drives changes.
+/// Contour errors over the change of one quantity of the drives.
 struct RobustnessCurve {
   std::string quantity, unit;
-  std::vector<RobustnessPoint> points;  ///< ascending; a change of 0 among them
+  std::vector<RobustnessPoint> points;  ///< ascending; includes a change of 0
 };
 
 struct Robustness {
@@ -55,7 +55,7 @@ struct Robustness {
   std::vector<RobustnessCurve> curves;  ///< inertia +-20 %, friction +-30 %, delay up to one control period more
 };
 
-/// Simulates the circle with every change and controller.
+/// Simulates the circle for every change and controller.
 Robustness find_robustness(const RobustnessMachine& machine, const RobustnessOptions& options);
 
 /// "axis-robustness/1".

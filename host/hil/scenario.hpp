@@ -30,7 +30,7 @@ struct ScenarioAxis {
   bool zero_phase = true;
   bool friction_feedforward = true;
   bool disturbance_cancellation = false;
-  bool compensation = true;  ///< of further effects that are known
+  bool compensation = true;  ///< compensate further known effects
   ReferenceLimits limits;
   LoopTuning tuning;
   hal::pc::AxisWiring wiring;
@@ -41,7 +41,7 @@ enum class MoveKind { jog, move_to, stop, circle, square, enable, disable, clear
 struct ScenarioMove {
   double at_s = 0.0;
   MoveKind kind = MoveKind::jog;
-  std::size_t axis = 0;      ///< not for paths
+  std::size_t axis = 0;      ///< unused for paths
   double speed_mm_s = 0.0;   ///< jog
   double target_mm = 0.0;    ///< move_to
   std::optional<Path> path;  ///< circle, square
@@ -50,7 +50,7 @@ struct ScenarioMove {
 
 struct ScenarioFault {
   double at_s = 0.0;
-  std::optional<double> until_s;  ///< ends then
+  std::optional<double> until_s;  ///< time at which the fault ends
   const InjectionInfo* injection = nullptr;
   std::size_t axis = 0;
   double value = 0.0;
@@ -60,7 +60,7 @@ struct ScenarioFault {
 struct Expectation {
   std::size_t line = 0;
   std::size_t axis = 0;
-  bool aim = false;  ///< desired only: a run that misses it does not fail
+  bool aim = false;  ///< a target only: a run that misses it does not fail
   std::optional<firmware::AxisFault> fault;
   std::optional<double> by_s;
   std::optional<firmware::SupervisorState> state;
@@ -86,13 +86,14 @@ struct Scenario {
   std::vector<ScenarioMove> moves;
   std::vector<ScenarioFault> faults;
   std::vector<Expectation> expectations;
-  bool programs_allowed = false;  ///< set by the user's consent to what programs_of() names
+  bool programs_allowed = false;  ///< the user has consented to the programs of programs_of()
 };
 
-/// The command lines that it runs, each once. A scenario may come from anywhere: they run only with consent.
+/// The command lines that the scenario runs, without repetition. They run only with the user's consent, because a
+/// scenario may come from anywhere.
 std::vector<std::string> programs_of(const Scenario& scenario);
 
-/// Throws Failure(bad_input) naming file, line, field and remedy. Models named in it are read from its folder.
+/// Throws Failure(bad_input) naming file, line, field and remedy. Reads the models that it names from its folder.
 Scenario read_scenario(const std::string& path);
 Scenario parse_scenario(std::string_view text, const std::string& path);
 

@@ -11,7 +11,7 @@
 namespace host {
 
 struct IndexLine {
-  std::string page;  ///< file beside the index
+  std::string page;  ///< file in the folder of the index
   std::string name;
   std::string summary;
   bool holds = false, misses_aim = false;
@@ -19,10 +19,10 @@ struct IndexLine {
 
 IndexLine index_line(const Scenario& scenario, const ScenarioRun& run, const std::string& page);
 
-/// "34 of 36 scenarios hold; fault-late: …, …": the total, and what failed.
+/// "34 of 36 scenarios hold; fault-late: …, …": the total and the failures.
 Verdict index_verdict(const std::vector<IndexLine>& lines);
 
-/// One row with a link for each, failures first; the total above.
+/// The total, and one row with a link for each scenario, failures first.
 Report scenario_index(const std::vector<IndexLine>& lines);
 
 }  // namespace host

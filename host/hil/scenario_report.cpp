@@ -46,11 +46,11 @@ Table stop_table(const ScenarioRun& run) {
   return table;
 }
 
-/// As the paper's Fig. 11: tracking errors of both axes, contour error.
+/// Tracking errors of both axes and contour error, as in the paper's Fig. 11.
 TimePlot error_plot(const ScenarioRun& run) {
   TimePlot plot;
   plot.title = run.contour_um.empty() ? "Tracking errors" : "Tracking and contour errors (as Fig. 11)";
-  plot.caption = "Reference less encoder.";
+  plot.caption = "Reference minus encoder.";
   plot.t_s = run.records[0].t_s;
   for (std::size_t i = 0; i < hal::kAxisCount; ++i)
     plot.panels.push_back(
@@ -62,12 +62,12 @@ TimePlot error_plot(const ScenarioRun& run) {
   return plot;
 }
 
-/// As in the paper's Fig. 9: speed, command and the disturbance that the Kalman filter estimates.
+/// Speed, command and the disturbance estimated by the Kalman filter, as in the paper's Fig. 9.
 TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
   const Record& record = run.records[axis];
   TimePlot plot;
   plot.title = fmt::format("Axis {}: motion and disturbance (as Fig. 9)", kAxisNames[axis]);
-  plot.caption = "The Kalman filter's disturbance is what friction feed-forward leaves over.";
+  plot.caption = "The Kalman filter's disturbance is the friction that feed-forward does not cancel.";
   plot.t_s = record.t_s;
   plot.panels = {
       {"position", "mm", {{"encoder", SeriesRole::measured, record.x}, {"reference", SeriesRole::model, record.x_ref}}},
@@ -81,7 +81,7 @@ TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
   return plot;
 }
 
-/// The path that was travelled, and its deviation.
+/// The path of the encoders, and its deviation.
 ScatterPlot plane_plot(const ScenarioRun& run) {
   ScatterPlot plot;
   plot.title = "The path in the plane";
@@ -110,7 +110,7 @@ ScatterPlot plane_plot(const ScenarioRun& run) {
   return plot;
 }
 
-/// As in the paper's Fig. 10: the controller's friction curve over the drive's true friction.
+/// The controller's friction curve and the drive's true friction, as in the paper's Fig. 10.
 ScatterPlot friction_plot(const Scenario& scenario, const ScenarioRun& run, std::size_t axis) {
   ScatterPlot plot;
   plot.title = fmt::format("Axis {}: friction curve (as Fig. 10)", kAxisNames[axis]);

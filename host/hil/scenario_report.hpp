@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// Good, an aim missed, or a requirement not met.
+/// Good, target missed, or requirement failed.
 struct ScenarioOutcome {
   Tone tone = Tone::neutral;
   std::string word;

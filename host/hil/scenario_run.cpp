@@ -41,7 +41,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
   return {axis.drive, parameters, axis.wiring};
 }
 
-/// Starts the programs that replace drives, once for all axes with the same program.
+/// Starts the programs that replace drives; axes with the same program share one process.
 void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxisCount>& axes) {
   constexpr std::chrono::seconds kPatience{10};
   std::map<std::string, std::vector<std::size_t>> served;
@@ -228,7 +228,7 @@ class ScenarioDriver {
   std::vector<std::array<firmware::Increment, hal::kAxisCount>> path_increments_;
   std::size_t path_place_ = 0;
   std::array<double, hal::kAxisCount> path_origin_mm_{};
-  std::array<double, hal::kAxisCount> table_mm_{};  ///< when the control period began
+  std::array<double, hal::kAxisCount> table_mm_{};  ///< at the beginning of the control period
   std::array<std::vector<double>, hal::kAxisCount> table_um_;
   std::array<std::vector<double>, hal::kAxisCount> disturbance_V_;
   std::vector<double> contour_um_;

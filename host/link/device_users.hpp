@@ -14,8 +14,8 @@ struct DeviceUser {
 /// Processes other than this one that hold `file` open, as far as /proc lets this user see them.
 std::vector<DeviceUser> users_of(const std::string& file);
 
-/// "; process 4711 has it open too (axistool capture -o jog.csv): let it end, or end it (kill 4711)" of all of them; ""
-/// where there is none.
+/// A hint for error messages that lists these programs: "; process 4711 (axistool capture -o jog.csv) has it open too:
+/// wait for it, or end it (kill 4711)"; empty if there are none.
 std::string other_users(const std::string& file);
 
 }  // namespace host

@@ -1,5 +1,4 @@
-// hidapi, chosen when the program runs: its hidraw back end (the kernel's HID driver stays in charge) or its libusb
-// one.
+// Loads hidapi at run time: its hidraw back end (which uses the kernel's HID driver) or its libusb back end.
 #pragma once
 
 #include <hidapi/hidapi.h>
@@ -22,11 +21,11 @@ struct HidLibrary {
   decltype(&hid_send_feature_report) send_feature_report = nullptr;
 };
 
-/// The one that the environment variable AXISTOOL_HIDAPI names (hidraw or libusb), else hidraw, else libusb. Throws
-/// Failure: usage for another name, no_such_device when the library is not installed.
+/// The back end in the environment variable AXISTOOL_HIDAPI (hidraw or libusb), else hidraw, else libusb. Throws
+/// Failure: usage for another name, no_such_device if the library is not installed.
 const HidLibrary& hid_library();
 
-/// One back end. Throws Failure (no_such_device) when it is not installed.
+/// The given back end. Throws Failure (no_such_device) if it is not installed.
 const HidLibrary& hid_library(HidBackend backend);
 
 const char* name_of(HidBackend backend);

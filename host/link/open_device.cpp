@@ -16,7 +16,7 @@ std::unique_ptr<ReportLink> open_device(const std::string& device) {
   if (device.starts_with("socket:")) return connect_to_socket(rest_after("socket:"));
   throw Failure(
       ExitCode::usage,
-      fmt::format("--device {}: write usb:SERIAL, sim or socket:PATH; `axistool list` shows the boards there are",
+      fmt::format("--device {}: write usb:SERIAL, sim or socket:PATH; `axistool list` shows the connected boards",
                   device));
 }
 

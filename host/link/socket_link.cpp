@@ -53,7 +53,7 @@ class SocketLink : public ReportLink {
 
   OwnedDescriptor socket_;
   std::string path_;
-  OwnedDescriptor mark_;  ///< a connection does not tell its path; this does, to users_of()
+  OwnedDescriptor mark_;  ///< an open file with the socket's path, for users_of(): a connection does not show its path
 };
 
 sockaddr_un address_of(const std::string& path) {
@@ -82,7 +82,7 @@ bool is_socket(const std::string& path) {
   return ::lstat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode);
 }
 
-/// Only a socket that an ended board has left may be removed.
+/// Throws if the file at `path` is not a socket. Only the socket of a board that has ended may be removed.
 void require_no_other_file(const std::string& path) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) return;
@@ -123,7 +123,7 @@ OwnedDescriptor listen_at_socket(const std::string& path) {
   require_no_other_file(path);
   ::unlink(path.c_str());
   OwnedDescriptor socket = new_socket();
-  const mode_t usual = ::umask(0077);  // whoever may connect may move the board's axes
+  const mode_t usual = ::umask(0077);  // only the owner may connect, because a connection can move axes
   const int bound = ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   ::umask(usual);
   if (bound != 0 || ::listen(socket.get(), 4) != 0)

@@ -1,4 +1,4 @@
-// A board at the other end of a Unix socket: the same 64-byte reports, one a packet.
+// Link to a board through a Unix socket: the same 64-byte reports, one in each packet.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// A file descriptor that is closed once.
+/// Owns a file descriptor and closes it.
 class OwnedDescriptor {
  public:
   explicit OwnedDescriptor(int descriptor = -1) : descriptor_(descriptor) {}
@@ -26,14 +26,14 @@ class OwnedDescriptor {
   int descriptor_;
 };
 
-/// Throws Failure(no_such_device) when nobody listens at `path`, Failure(permission) when the user may not.
+/// Throws Failure(no_such_device) if no board listens at `path`, Failure(permission) if the user may not connect.
 std::unique_ptr<ReportLink> connect_to_socket(const std::string& path);
 
 /// Default socket of `axistool sim`: in the user's own runtime folder.
 std::string default_socket_path();
 
-/// A listening socket; one that a program left behind at `path` is replaced. Throws Failure(refused) when another
-/// simulated board listens there, Failure(usage) where another kind of file is.
+/// A listening socket at `path`; replaces a socket that an ended program left there. Throws Failure(refused) if another
+/// simulated board listens there, Failure(usage) if there is another kind of file.
 OwnedDescriptor listen_at_socket(const std::string& path);
 
 /// Removes the socket at `path`; leaves any other kind of file.

@@ -24,7 +24,7 @@ std::string narrow(const wchar_t* text) {
   return result;
 }
 
-/// libusb does not tell usage page and usage.
+/// Whether the device is a board; libusb does not report usage page and usage.
 bool is_board(const hid_device_info& found) {
   return found.interface_number <= hal::kUsbInterface &&
          (found.usage_page == 0 || (found.usage_page == hal::kHidUsagePage && found.usage == hal::kHidUsage));
@@ -83,7 +83,7 @@ std::vector<UsbBoard> find_usb_boards(const HidLibrary& library) {
 
 std::unique_ptr<ReportLink> open_usb_board(const std::string& serial_number, const HidLibrary& library) {
   const std::vector<UsbBoard> boards = find_usb_boards(library);
-  // Without permission libusb cannot read serial numbers; then whatever board there is shows what is missing.
+  // Without permission libusb cannot read serial numbers. Then opening the only board gives the error message.
   const bool unreadable = boards.size() == 1 && boards.front().serial_number.empty();
   const UsbBoard& board = unreadable ? boards.front() : choose(boards, serial_number);
   hid_device* device = library.open_path(board.path.c_str());

@@ -31,7 +31,7 @@ UsbLink::~UsbLink() {
 }
 
 void UsbLink::send(const hal::HidReport& report) {
-  std::array<unsigned char, 1 + hal::kHidReportSize> message{};  // first the report's identifier: there is none
+  std::array<unsigned char, 1 + hal::kHidReportSize> message{};  // the first byte is the report identifier: 0, unused
   std::memcpy(message.data() + 1, report.data(), report.size());
   if (library_.write(device_, message.data(), message.size()) < 0) throw gone(name_);
 }
@@ -47,7 +47,7 @@ std::optional<hal::HidReport> UsbLink::receive(std::chrono::milliseconds limit) 
 }
 
 void UsbLink::read() {
-  constexpr int kLookForStop_ms = 10;  // so long the end of each command waits
+  constexpr int kLookForStop_ms = 10;  // closing the link takes up to this time
   for (;;) {
     std::array<unsigned char, hal::kHidReportSize> buffer{};
     const int size = library_.read_timeout(device_, buffer.data(), buffer.size(), kLookForStop_ms);

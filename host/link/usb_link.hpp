@@ -13,7 +13,7 @@ namespace host {
 
 class UsbLink : public ReportLink {
  public:
-  /// Takes over `device`, which `library` has opened.
+  /// Takes ownership of `device`, which `library` has opened.
   UsbLink(const HidLibrary& library, hid_device* device, const std::string& serial_number, std::string file = "");
   ~UsbLink() override;
 
@@ -33,7 +33,7 @@ class UsbLink : public ReportLink {
   std::deque<hal::HidReport> reports_;
   bool gone_ = false;
   bool stop_ = false;
-  std::thread reader_;  // last: it uses the others
+  std::thread reader_;  // last member, because it uses the others
 };
 
 }  // namespace host

@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-/// Vendor, product and HID_QUIRK_ALWAYS_POLL, as usbhid takes it.
+/// Vendor, product and HID_QUIRK_ALWAYS_POLL, in the format of usbhid's option.
 std::string quirk() {
   constexpr unsigned kAlwaysPoll = 1u << 10;
   return fmt::format("0x{:04x}:0x{:04x}:0x{:04x}", hal::kUsbVendor, hal::kUsbProduct, kAlwaysPoll);

@@ -1,6 +1,5 @@
-// How Linux polls boards. Unless told to poll a HID device always, it waits 50 ms at each opening by hidraw, for events
-// from before (usbhid_open() in drivers/hid/usbhid/hid-core.c); reports of an axis board carry numbers and need no
-// wait.
+// Makes Linux poll boards permanently. Otherwise each opening by hidraw waits 50 ms for old events (usbhid_open() in
+// drivers/hid/usbhid/hid-core.c). Reports of an axis board carry numbers and need no wait.
 #pragma once
 
 #include <string>
@@ -12,11 +11,11 @@ inline constexpr const char* kUsbPollingFile = "/etc/modprobe.d/axis.conf";
 /// The line of kUsbPollingFile: HID_QUIRK_ALWAYS_POLL (include/linux/hid.h) for axis boards.
 std::string usb_polling_options();
 
-/// Whether the usbhid that is loaded has been given that option; false where it cannot be told.
+/// Whether the loaded usbhid has this option; false if that is unknown.
 bool usb_polls_always();
 
-/// Writes the file, which holds from the next time that Linux loads usbhid. Throws Failure (permission) when it may
-/// not.
+/// Writes the file, which takes effect when Linux next loads usbhid. Throws Failure (permission) if the user lacks the
+/// rights.
 void install_usb_polling();
 
 }  // namespace host

@@ -7,13 +7,13 @@
 
 namespace host {
 
-/// Parameters of an axis that runs `design`, with the friction curve of `model` (whose viscous part beyond the design's
-/// own B is none: both are the model's). All switches are off. `tachometer_resolution`: rad/s (m/s) a code of the
-/// board.
+/// Parameters of an axis that runs `design`, with the friction curve of `model`. The curve has no viscous part, because
+/// the design already includes the model's B. All switches are off. `tachometer_resolution`: rad/s (m/s) per code of
+/// the board.
 firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                 double tachometer_resolution, const ReferenceLimits& limits = {});
 
-/// The same as on a board after `design` and `set-params`: with the switches of board_parameters().
+/// The same with the switches of board_parameters(), as on a board after `design` and `set-params`.
 firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                     const ControlFilterChoice& filters = {});
 

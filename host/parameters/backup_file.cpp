@@ -23,7 +23,7 @@ constexpr std::string_view kPitchHead =
     "# Tables of pitch errors: axis, counts from home, forward, backward (2^-16 counts)";
 constexpr std::string_view kPitchKey = "#pitch ";
 
-/// Four whole numbers with blanks between them, and nothing else.
+/// Parses exactly four whole numbers, separated by blanks.
 std::optional<std::array<std::int32_t, 4>> four_whole(std::string_view text) {
   std::array<std::int32_t, 4> all{};
   for (std::int32_t& one : all) {
@@ -41,7 +41,7 @@ std::optional<std::array<std::int32_t, 4>> four_whole(std::string_view text) {
 /// Programs whose backups had no CRC supported only boards with two axes.
 constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
 
-/// Normalises line ends first: an editor or a mail that writes CR LF has not changed a value.
+/// CRC of the text with LF line ends, because CR LF from an editor or a mail changes no value.
 std::uint32_t crc_of(std::string_view text) {
   std::string plain(text);
   std::erase(plain, '\r');
@@ -68,7 +68,7 @@ std::string parameter_lines(const firmware::ParameterValues& values) {
   return text;
 }
 
-/// The file's statements about the text below its CRC.
+/// Count and CRC of the text below, from the header of the file.
 struct Seal {
   unsigned long count = 0;
   std::uint32_t crc = 0;

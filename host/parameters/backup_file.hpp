@@ -10,11 +10,11 @@
 
 namespace host {
 
-using PitchTables = std::vector<std::vector<firmware::PitchPoint>>;  ///< an axis each
+using PitchTables = std::vector<std::vector<firmware::PitchPoint>>;  ///< one table for each axis
 
-/// A file of parameters (`axis-params/1`), each with unit and meaning, headed by their count and the CRC-32 of all that
-/// follows it. `foreign`: entries of a board's flash that the table does not have. `pitch`: each axis's table of pitch
-/// errors. Both stand in comments, so that the file remains one of parameters.
+/// A file of parameters (`axis-params/1`), each with unit and meaning. The header contains their count and the CRC-32
+/// of the text after it. `foreign`: entries in a board's flash that are unknown to the table. `pitch`: each axis's
+/// table of pitch errors. Both are written as comments, so that the file remains a file of parameters.
 std::string format_backup(const firmware::ParameterValues& values,
                           const std::vector<firmware::StoredEntry>& foreign = {}, const PitchTables& pitch = {});
 

@@ -27,9 +27,9 @@ std::string value_text(const firmware::ParameterInfo& info, double value) {
   return number;
 }
 
-/// The monitors' initial values are for a rotary drive with a screw. Those of a linear drive are for the same machine
-/// at its table: lengths in m, speeds converted with the paper's 10 mm per turn. Thresholds of commands follow from the
-/// converter's limit and from the friction that a command must overcome.
+/// The monitors' initial values suit a rotary drive with a screw. For a linear drive they are converted to m, with the
+/// paper's 10 mm per turn. Thresholds of commands follow from the converter's limit and from the friction that a
+/// command must overcome.
 void append_monitors(bool rotary, double dac_limit_V, double friction_V, std::vector<BoardParameter>& list) {
   constexpr double kLead_m_per_rad = 0.010 / (2.0 * std::numbers::pi);
   const double length = rotary ? 1.0 : 1e-3;
@@ -64,7 +64,7 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   const FrictionLaw friction = friction_law(model);
   const double viscous =
       rigid_axis(model).viscous - design.axis.viscous;  // mostly zero: the design uses the model's value
-  // Smoothed through zero over a hundredth of a turn a second; a hundredth of 1 mm/s for a linear drive's metres.
+  // Friction is smoothed through zero speed over 0.01 turns/s (0.06 rad/s), for a linear drive over 1e-4 m/s.
   const double blend = rotary ? 0.06 : 1e-4;
 
   std::vector<BoardParameter> list = {

@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// Limits of references, mm (rotary) or m (linear) per s, s^2, s^3. Defaults: the paper, p. 1508 (in mm; its feed of
-/// 170 mm/s with room to spare).
+/// Limits of references in mm (rotary) or m (linear) per s, s^2, s^3. Defaults, in mm: the paper, p. 1508, with a
+/// velocity above its feed of 170 mm/s.
 struct ReferenceLimits {
   double velocity = 250.0;
   double acceleration = 2000.0;
@@ -19,19 +19,19 @@ struct ReferenceLimits {
 };
 
 struct BoardParameter {
-  std::string name;  ///< as in firmware/app/parameters/parameter_table.hpp, without the axis: "kalman.k11"
+  std::string name;  ///< name in firmware/app/parameters/parameter_table.hpp, without the axis: "kalman.k11"
   double value;      ///< 0 or 1 for a switch
 };
 
 /// Drive, sampled model (7), Kalman gain (43), feedback (50), friction feed-forward (19), limits, monitors that depend
 /// on the kind of drive; all compensations on.
 /// Without a tachometer the second column of the Kalman gain is zero; without friction effects the levels are zero. The
-/// tachometer's gain and offset are the board's and do not occur.
+/// tachometer's gain and offset are not included.
 std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                              const ReferenceLimits& limits);
 
-/// The same as a TOML document with one table a group, named after the axis (the model's name,
-/// "x" when it has none). Values carry nine digits: as many as single precision on the board can tell apart.
+/// The same as a TOML document with one table for each group, named after the axis (the model's name, or "x" if it has
+/// none). Values have nine digits, which single precision on the board needs.
 std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design,
                                   const ReferenceLimits& limits);
 /// With the usual limits.

@@ -21,14 +21,14 @@ namespace {
 
 using Parameters = std::vector<CompensationParameter>;
 
-/// One sine over the travel, as the board holds it.
+/// One sine over the travel, in the board's form.
 struct BoardHarmonic {
   double cosine, sine, period;
 
   double amplitude() const { return std::hypot(cosine, sine); }
 };
 
-/// Every order of every effect of a kind, largest first.
+/// All orders of all effects of a kind, largest first.
 std::vector<BoardHarmonic> board_harmonics(const sim::DriveDescription& model, std::string_view kind) {
   std::vector<BoardHarmonic> harmonics;
   for (const sim::EffectEntry& entry : model.effects) {
@@ -73,7 +73,7 @@ void append_backlash(const sim::DriveDescription& model, Parameters& list) {
   list.push_back({"backlash.on", gap > 0.0 ? 1.0 : 0.0});
   if (gap <= 0.0) return;
   list.push_back({"backlash.gap", gap});
-  // The stiffness of two masses that meet at this resonance, under the friction on the table's side.
+  // The stiffness between two masses follows from this resonance; it is loaded by the friction on the table's side.
   const sim::EffectEntry* inertia = model.find("inertia");
   const double load = backlash->at("load_fraction");
   const double rate = 2.0 * std::numbers::pi * backlash->at("resonance");

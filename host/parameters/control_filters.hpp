@@ -1,4 +1,4 @@
-// Notch and low-pass after the feedback (firmware/core/control/control_filter.hpp), as chosen by a design.
+// Notch and low-pass filters of a design, after the feedback (firmware/core/control/control_filter.hpp).
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace host {
 
 struct Notch {
   double f_Hz = 0.0;
-  double damping = 0.5;  ///< half its width over its frequency
-  double depth = 0.1;    ///< remaining gain at its frequency
+  double damping = 0.5;  ///< half width relative to the frequency
+  double depth = 0.1;    ///< gain at the frequency
 };
 struct LowPass {
   double f_Hz = 0.0;
@@ -24,13 +24,13 @@ struct ControlFilterChoice {
   std::optional<LowPass> low_pass;
 };
 
-/// Both switches, and the values of those that are on.
+/// Both switches, and the values of the filters that are on.
 std::vector<CompensationParameter> filter_parameters(const ControlFilterChoice& choice);
 
-/// The same as TOML tables behind host::board_parameters_toml() of the same model.
+/// The same as TOML tables, to append to board_parameters_toml() of the same model.
 std::string filter_toml(const sim::DriveDescription& model, const ControlFilterChoice& choice);
 
-/// The same in the form that the control core takes. Throws Failure(bad_input) for a value out of its range, or not
+/// The same in the control core's form. Throws Failure(bad_input) for a value out of its range, or a frequency not
 /// below 0.45 of the control rate.
 firmware::FilterParameters<float> core_filters(const ControlFilterChoice& choice, double sample_period_s);
 

@@ -1,4 +1,4 @@
-// A design as a file of one axis's parameters (`axis-params/1`), with all that the board compensates and filters.
+// A design as a file of one axis's parameters (`axis-params/1`), with compensations and filters.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,12 +10,12 @@
 
 namespace host {
 
-/// Board parameters, compensations of the model's effects and filters. Throws as core_filters() for a filter out of its
-/// range.
+/// Board parameters, compensations of the model's effects and filters. Throws as core_filters() if a filter is out of
+/// its range.
 std::string design_toml(const sim::DriveDescription& model, const AxisDesign& design,
                         const ControlFilterChoice& filters, const ReferenceLimits& limits);
 
-/// {"notch": {…}, "low_pass": {…}}, null where there is none.
+/// {"notch": {…}, "low_pass": {…}}; null for a filter that is off.
 nlohmann::json filter_json(const ControlFilterChoice& filters);
 
 }  // namespace host

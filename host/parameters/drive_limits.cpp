@@ -25,7 +25,7 @@ sim::DriveDescription without(sim::DriveDescription model, const std::set<std::s
 }
 
 const std::set<std::string> kLoads = {"constant_torque", "cogging"};
-/// They take effort where their place, time or load says so, which limits of all motions do not know.
+/// Effects whose torque or force depends on position, time or load, so limits for all motions cannot include it.
 const std::set<std::string> kElsewhere = {"position_dependent_friction",
                                           "thermal_friction_drift",
                                           "spring_torque",
@@ -34,7 +34,7 @@ const std::set<std::string> kElsewhere = {"position_dependent_friction",
                                           "torque_ripple",
                                           "free_curve"};
 
-/// Efforts of a drive along a steady motion, Nm or N.
+/// Torques or forces of a drive at steady speed, Nm or N.
 class EffortBalance {
  public:
   explicit EffortBalance(const sim::DriveDescription& model)
@@ -59,18 +59,18 @@ class EffortBalance {
     }
   }
 
-  /// What the motor gives at most, `push` +1 along the motion of direction `way`, -1 against it.
+  /// Largest torque or force of the motor, `push` +1 along the motion of direction `way`, -1 against it.
   double most(int way, int push, double speed) const {
     double effort = way * push * full_;
     for (const auto& limit : drive_.effort_limit) effort = limit(effort, way * speed);
     return std::abs(effort);
   }
 
-  /// What the motor must give against friction and loads to keep its speed, beside the acceleration's effort.
+  /// Torque or force of the motor against friction and loads at constant speed.
   double need(int way, int push, double speed) const {
     Motion motion;
     motion.t_s = motion.travel = motion.acceleration = motion.effort = {0.0};
-    motion.speed = {way * std::max(speed, 1e-9)};  // at rest the friction of breakaway
+    motion.speed = {way * std::max(speed, 1e-9)};  // at rest, breakaway friction
     const double friction = std::abs(inverse_effort(drive_, motion).front());
     const double helping = way > 0 ? least_load_ : -most_load_, pulling = way > 0 ? most_load_ : -least_load_;
     return push > 0 ? friction - helping : pulling - friction;
@@ -87,11 +87,11 @@ class EffortBalance {
   double full_, least_load_, most_load_;
 };
 
-/// The place among all up to a speed that is worst.
+/// The worst case over all speeds up to a limit.
 struct Worst {
   int way = 1, push = 1;
   double speed = 0.0;
-  double room = kInfinite;  ///< for acceleration, Nm or N
+  double room = kInfinite;  ///< torque or force left for acceleration, Nm or N
 };
 
 Worst worst_up_to(const EffortBalance& balance, double speed, double reserve) {
@@ -107,7 +107,7 @@ Worst worst_up_to(const EffortBalance& balance, double speed, double reserve) {
   return worst;
 }
 
-/// The highest speed at which half of the room at standstill is left; infinite if it never falls so far.
+/// The highest speed at which half of the room at standstill is left; infinite if it never falls to half.
 double speed_with_half(const EffortBalance& balance, double reserve) {
   const double half = worst_up_to(balance, 0.0, reserve).room / 2.0;
   const auto keeps = [&](double speed) { return worst_up_to(balance, speed, reserve).room >= half; };

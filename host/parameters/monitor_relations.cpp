@@ -12,7 +12,7 @@ namespace {
 
 namespace ceilings = firmware::monitor_ceilings;
 
-/// Figures of the axis for the relations, in double precision.
+/// Values of the axis for the relations, in double precision.
 struct AxisFigures {
   double period_s, lead, fastest, count, full_change;
 

@@ -1,4 +1,4 @@
-// The violated relation between a monitor's threshold and the axis, with its figures and values that would fit.
+// The violated relation between a monitor's threshold and the axis's parameters, with values that would fit.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// Of monitor.overspeed, of monitor.disagreement with monitor.encoder_jump, of monitor.following_error: the first
-/// relation that does not hold, as firmware::check_monitors has them. Figures in the parameters' own units.
+/// Each function describes the first violated relation of firmware::check_monitors for monitor.overspeed,
+/// monitor.disagreement with monitor.encoder_jump, or monitor.following_error. Values are in the parameters' own units.
 std::string overspeed_relation(const firmware::AxisParameters<float>& p);
 std::string disagreement_relation(const firmware::AxisParameters<float>& p);
 std::string following_error_relation(const firmware::AxisParameters<float>& p);

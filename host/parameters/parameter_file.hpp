@@ -16,9 +16,9 @@ struct Assignment {
   float value = 0;
 };
 
-/// Reads a file of parameters; it need not name all. `axis` ("x", "y" or empty): axis of the board for a file with a
-/// single axis of another name (`design` names it after the model). Throws Failure(bad_input) naming file, line,
-/// parameter, range and unit.
+/// Reads a file of parameters, which may contain only some of them. `axis` ("x", "y" or empty): the board's axis for a
+/// file with a single axis of another name (`design` names it after the model). Throws Failure(bad_input) naming file,
+/// line, parameter, range and unit.
 std::vector<Assignment> read_parameter_file(const std::string& path, std::string_view axis = {});
 std::vector<Assignment> parse_parameter_text(std::string_view text, std::string_view name, std::string_view axis = {});
 
@@ -28,10 +28,10 @@ Assignment parse_assignment(std::string_view text);
 /// Throws Failure(bad_input) for an axis that the board does not have.
 void put(firmware::ParameterValues& values, const Assignment& one);
 
-/// The same for all that a file assigns. Throws what read_parameter_file() does, too.
+/// The same for all assignments of a file. Also throws as read_parameter_file().
 void put_file(firmware::ParameterValues& values, const std::string& path, std::string_view axis = {});
 
-/// Throws Failure(bad_input) naming the fault of the set as a whole, as far as the host can check it.
+/// Throws Failure(bad_input) if the values do not fit together, as far as the host can check it.
 void require_fitting_set(const firmware::ParameterValues& values);
 
 }  // namespace host

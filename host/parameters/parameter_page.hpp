@@ -1,4 +1,4 @@
-// The parameters' documentation, made from their table.
+// The documentation of the parameters, generated from their table.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// A Markdown page with one table a group: firmware/app/parameters/README.md.
+/// A Markdown page with one table for each group: firmware/app/parameters/README.md.
 std::string parameter_page();
 
 /// The same as data: format "axis-parameter-table/1".

@@ -23,7 +23,7 @@ std::string eigenvalues_text(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXcd values = eigenvalues(matrix);
   std::string text;
   for (const std::complex<double>& z : values) {
-    if (z.imag() < 0.0) continue;  // its conjugate stands for both
+    if (z.imag() < 0.0) continue;  // printed with its conjugate
     text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", z.real());
     if (z.imag() > 0.0) text += fmt::format(" +- {:.4g}i", z.imag());
   }

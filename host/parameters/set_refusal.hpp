@@ -1,4 +1,4 @@
-// Why a set of parameters is refused, in words: the violated relation and its figures.
+// The reason why a set of parameters is refused, in words: the violated relation and its values.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-/// The smallest that the curve reaches up to the speed, without its viscous part.
+/// The smallest friction of the curve up to the speed, without its viscous part.
 double least_friction(const sim::DriveDescription& model, double top_speed) {
   const FrictionLaw law = friction_law(model);
   constexpr int kPlaces = 100;
@@ -23,7 +23,7 @@ double least_friction(const sim::DriveDescription& model, double top_speed) {
   return std::max(least, 0.0);
 }
 
-/// Under a constant effort against the motion.
+/// Stopping distance and time under a constant torque or force against the motion.
 StoppingWay coast(const StoppingFigures& axis, double speed, double effort) {
   if (speed == 0.0) return {};
   if (!(effort > 0.0)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

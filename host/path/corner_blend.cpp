@@ -7,8 +7,8 @@ namespace host {
 
 namespace {
 
-constexpr double kShortest_mm = 1e-3;  ///< shorter blends cannot be told from a corner by any encoder
-constexpr double kSharpest_rad = 2.9;  ///< beyond, the path turns back
+constexpr double kShortest_mm = 1e-3;  ///< no encoder distinguishes a shorter blend from a corner
+constexpr double kSharpest_rad = 2.9;  ///< at larger angles the path reverses
 
 CornerBlend blend_of(const PathCurve& before, const PathCurve& after, double taken) {
   return {PathCurve::blend(before.at(before.length() - taken), after.at(taken), 2.0 * taken), taken};

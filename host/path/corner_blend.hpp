@@ -1,4 +1,4 @@
-// Rounds the corners of a path, and smooths its changes of curvature, within a tolerance.
+// Rounds corners and smooths changes of curvature of a path within a tolerance.
 #pragma once
 
 #include <optional>
@@ -7,14 +7,14 @@
 
 namespace host {
 
-/// A curve from the end of one piece to the beginning of the next, and the lengths that it replaces.
+/// A curve that replaces the end of one piece and the beginning of the next.
 struct CornerBlend {
   PathCurve curve;
-  double taken = 0.0;  ///< mm of each piece
+  double taken = 0.0;  ///< length replaced of each piece, mm
 };
 
-/// The blend and the pieces with their corner are at most `tolerance_mm` apart, and it replaces at most `most_mm` of
-/// each piece. Empty if the path reverses, or the corner is too sharp for the tolerance.
+/// The blend deviates from the corner by at most `tolerance_mm` and replaces at most `most_mm` of each piece. Empty if
+/// the path reverses, or the corner is too sharp for the tolerance.
 std::optional<CornerBlend> blend_corner(const PathCurve& before, const PathCurve& after, double tolerance_mm,
                                         double most_mm);
 

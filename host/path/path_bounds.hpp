@@ -5,7 +5,7 @@
 
 namespace host {
 
-/// Throws Failure(bad_input) naming the line and the limit: slow axes make a short program last for days.
+/// Throws Failure(bad_input) naming the line and the limit. With slow axes even a short program may last for days.
 void require_bounded(std::size_t nodes, double duration_s, std::size_t line);
 
 }  // namespace host

@@ -35,7 +35,7 @@ PathCurve PathCurve::blend(const CurveState& begin, const CurveState& end, doubl
   curve.kind_ = Kind::blend;
   const PathPoint first = reach * begin.tangent, second = reach * reach * begin.curvature;
   const PathPoint first_end = reach * end.tangent, second_end = reach * reach * end.curvature;
-  // Of a Bezier curve of fifth degree: derivatives at its ends are 5 (P1 - P0) and 20 (P2 - 2 P1 + P0).
+  // The derivatives at the ends of a Bezier curve of fifth degree are 5 (P1 - P0) and 20 (P2 - 2 P1 + P0).
   auto& p = curve.control_;
   p[0] = begin.point;
   p[1] = p[0] + first / 5.0;
@@ -51,7 +51,7 @@ PathCurve PathCurve::blend(const CurveState& begin, const CurveState& end, doubl
 
 namespace {
 
-/// de Casteljau's: the value and its first two derivatives.
+/// The value and its first two derivatives, by de Casteljau's algorithm.
 struct BezierState {
   PathPoint value, first, second;
 };
@@ -72,7 +72,7 @@ BezierState evaluate(const std::array<PathPoint, 6>& control, double u) {
 void PathCurve::measure() {
   lengths_.assign(1, 0.0);
   for (std::size_t i = 0; i < kParts; ++i) {
-    // Gauss, three points: of fifth degree exact, and the speed along the curve is smooth.
+    // Gauss quadrature with three points: exact to fifth degree, and the speed along the curve is smooth.
     const double middle = (static_cast<double>(i) + 0.5) / kParts, half = 0.5 / kParts;
     const double off = half * std::sqrt(0.6);
     const double sum = 5.0 * evaluate(control_, middle - off).first.norm() +
@@ -105,14 +105,14 @@ CurveState PathCurve::at(double length) const {
     point.z() += share * (end_.z() - begin_.z());
     return {point, {-turns * out.y(), turns * out.x(), (end_.z() - begin_.z()) / length_}, -turns * turns * out};
   }
-  // The share from the table, then Newton's steps on the length within its part.
+  // The parameter from the table, then Newton steps on the length within its part.
   const double wanted = std::clamp(length, 0.0, length_);
   const auto next = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, wanted);
   const auto part = static_cast<std::size_t>(next - lengths_.begin()) - 1;
   const double whole = lengths_[part + 1] - lengths_[part];
   double inside = whole > 0.0 ? (wanted - lengths_[part]) / whole : 0.0;
   for (int k = 0; k < 2; ++k) {
-    // Simpson's rule from the part's beginning.
+    // Simpson's rule from the beginning of the part.
     const double from = static_cast<double>(part) / kParts, width = inside / kParts;
     const double here = evaluate(control_, from + width).first.norm();
     const double reached =
@@ -135,7 +135,7 @@ double PathCurve::distance_to(const PathPoint& point) const {
     double turned = std::remainder(seen - start, 2.0 * std::numbers::pi);
     if (turned * angle_ < 0.0) turned += std::copysign(2.0 * std::numbers::pi, angle_);
     double nearest = std::min((point - begin_).norm(), (point - end_).norm());
-    // Of a helix the turn that is nearest in height; exact where it does not rise.
+    // For a helix, the turn nearest in height; exact if it does not rise.
     for (; std::abs(turned) <= std::abs(angle_); turned += std::copysign(2.0 * std::numbers::pi, angle_))
       nearest = std::min(nearest, (point - at(turned / angle_ * length_).point).norm());
     return nearest;

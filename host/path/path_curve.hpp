@@ -10,7 +10,7 @@ namespace host {
 /// Millimetres, x, y and z.
 using PathPoint = Eigen::Vector3d;
 
-/// Position at some length of a curve, and its derivatives by length: unit tangent, and curvature, 1/mm.
+/// Position at a length along a curve, and its derivatives by length: unit tangent and curvature vector, 1/mm.
 struct CurveState {
   PathPoint point = PathPoint::Zero(), tangent = PathPoint::Zero(), curvature = PathPoint::Zero();
 };
@@ -18,10 +18,10 @@ struct CurveState {
 class PathCurve {
  public:
   static PathCurve line(const PathPoint& begin, const PathPoint& end);
-  /// About `centre` in the plane of x and y, by `angle`, rad, positive counter-clockwise; z rises evenly to end_z.
+  /// An arc about `centre` in the xy plane by `angle`, rad, positive counter-clockwise; z rises linearly to end_z.
   static PathCurve arc(const PathPoint& begin, const PathPoint& centre, double angle, double end_z);
-  /// A polynomial of fifth degree from `begin` to `end` with their tangents and curvatures; its derivative at the ends
-  /// is that of a curve of length `reach`.
+  /// A polynomial of fifth degree from `begin` to `end` with their tangents and curvatures; its first derivative at the
+  /// ends has the magnitude `reach`.
   static PathCurve blend(const CurveState& begin, const CurveState& end, double reach);
 
   double length() const { return length_; }
@@ -40,7 +40,7 @@ class PathCurve {
 
  private:
   enum class Kind { line, arc, blend };
-  static constexpr std::size_t kParts = 64;  ///< of a blend's table
+  static constexpr std::size_t kParts = 64;  ///< intervals of a blend's table
 
   CurveState at_share(double share) const;
   void measure();
@@ -49,7 +49,7 @@ class PathCurve {
   double length_ = 0.0;
   PathPoint begin_ = PathPoint::Zero(), end_ = PathPoint::Zero(), centre_ = PathPoint::Zero();
   double angle_ = 0.0;
-  std::array<PathPoint, 6> control_{};  ///< Bezier's
+  std::array<PathPoint, 6> control_{};  ///< control points of the Bezier curve
   std::vector<double> lengths_;         ///< at the 64ths of the blend's parameter
 };
 

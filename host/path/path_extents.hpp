@@ -11,7 +11,7 @@ struct PathExtents {
   PathPoint least, most;  ///< mm
 };
 
-/// Extents of the whole path, to within a thousandth of a millimetre; no coordinate is -0.
+/// Extents of the whole path, to within 0.001 mm; no coordinate is -0.
 PathExtents extents_of(const PlannedPath& path);
 
 /// Throws Failure(refused) "NAME:LINE: …" for the first point of the path beyond a limit of one of its axes.

@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Time until a clock that changes at its fastest is constant again, s.
+/// Longest time until a changing clock is constant again, s.
 double longest_run_out_s(const AxisLimits& limits) {
   double change = std::numeric_limits<double>::infinity(), ramp = change;
   for (int i = 0; i < 3; ++i) {
@@ -33,7 +33,7 @@ void find_headroom(std::vector<PathKnot>& knots, const PathPlanOptions& options)
     const LimitUse use = limit_use(&knots[k - 1], &knots[k] + 1, options.limits);
     own[k] = 1.0 / std::max({std::sqrt(use.acceleration), std::cbrt(use.jerk), 1e-3});
   }
-  // A third difference reaches over three samples, and some are begun.
+  // A third difference spans three samples, some of them partly.
   const double sample_s = options.time_unit_s * (1 << firmware::kPathTimeBits), near_s = 4.0 * sample_s;
   const double ahead_s = 1.1 * longest_run_out_s(options.limits) + 8.0 * sample_s;
   for (std::size_t k = 1; k < knots.size(); ++k) {

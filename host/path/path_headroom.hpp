@@ -1,4 +1,4 @@
-// Headroom of each piece of a planned path for the board's clock: how much faster it could be followed (PathClock).
+// Headroom of each piece of a planned path: how much faster the board's clock could follow it (PathClock).
 #pragma once
 
 #include "firmware/core/path/path_headroom.hpp"
@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// The limits that a path must keep at rate 1 in order to keep the `limits` of acceleration and jerk at `rate`.
+/// Limits at rate 1 with which a path keeps the `limits` of acceleration and jerk at `rate`.
 AxisLimits limits_at_rate(const AxisLimits& limits, double rate);
 
 void find_headroom(std::vector<PathKnot>& knots, const PathPlanOptions& options);

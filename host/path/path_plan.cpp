@@ -17,21 +17,21 @@ namespace host {
 
 namespace {
 
-constexpr double kGoesOn_rad = 0.05;  ///< at a smaller corner the path does not stop, but rounds it within half a count
+constexpr double kGoesOn_rad = 0.05;  ///< smaller corners are rounded within half a count, without a stop
 constexpr double kSharp_rad =
-    0.6;  ///< beyond, stopping on the one leg while starting on the other is quicker than a curve
-constexpr double kMargin = 1.0 + 1e-4;  ///< for the motion between the checked points
-constexpr int kCheckedPoints = 16;      ///< of a polynomial
+    0.6;  ///< at larger angles, stopping on one leg while starting on the other is quicker than a curve
+constexpr double kMargin = 1.0 + 1e-4;  ///< margin for the motion between the checked points
+constexpr int kCheckedPoints = 16;      ///< points of a polynomial that are checked
 
-/// Spans that begin before the previous one has ended, where a tolerance allows it: each slows down and speeds up
-/// within its own limits, and one starts while the other stops.
+/// Spans that overlap in time if a tolerance allows it: one starts while the previous one stops, each within its own
+/// limits.
 class Chain {
  public:
   explicit Chain(const PathPlanOptions& options) : options_(options) {}
 
   bool is_empty() const { return spans_.empty(); }
 
-  /// `tolerance_mm`: of the corner at its beginning, with the previous span.
+  /// `tolerance_mm`: tolerance of the corner between the previous span and this one.
   void add(PathSpan span, double tolerance_mm) {
     constexpr int kRounds = 4;
     for (int k = 0; k < kRounds && span.tighten(knots_of({span}, {0.0})); ++k) continue;
@@ -40,7 +40,7 @@ class Chain {
     if (!spans_.empty()) {
       begin_s = begins_.back() + spans_.back().duration_s();
       double early_s = overlap(spans_.back(), span, tolerance_mm);
-      // With the motion of the knots: rather begin slightly later here than slow down the whole path.
+      // Checked with the motion of the knots: a slightly later begin here is better than slowing down the whole path.
       constexpr int kTrials = 8;
       for (int k = 0; k < kTrials && early_s > 0.0; ++k, early_s *= 0.96)
         if (excess({spans_.back(), span}, {0.0, spans_.back().duration_s() - early_s}) < 1.0005) break;
@@ -52,7 +52,7 @@ class Chain {
 
   void add_to(PlannedPath& path) {
     if (spans_.empty()) return;
-    // Afterwards the knots and the motion between them are slightly different, so this is repeated once or twice.
+    // Slowing down changes the knots and the motion between them slightly, so this is repeated once or twice.
     constexpr int kRounds = 4;
     for (int k = 0; k < kRounds; ++k) {
       const double more = excess(spans_, begins_);
@@ -77,14 +77,14 @@ class Chain {
   }
 
  private:
-  /// State of all spans at one time, each from its own beginning.
+  /// Sum of all spans at one time, each relative to its own beginning.
   static PathKnot at(const std::vector<PathSpan>& spans, const std::vector<double>& begins, double time_s) {
     const auto next = std::ranges::upper_bound(begins, time_s);
     const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - begins.begin() - 1, 0));
     PathKnot knot = spans[k].at(time_s - begins[k]);
     knot.time_s = time_s;
     if (k == 0 || time_s >= begins[k - 1] + spans[k - 1].duration_s()) return knot;
-    const PathKnot before = spans[k - 1].at(time_s - begins[k - 1]);  // the windows of two corners do not meet
+    const PathKnot before = spans[k - 1].at(time_s - begins[k - 1]);  // the overlaps at two corners do not meet
     knot.position += before.position - spans[k - 1].last().end();
     knot.velocity += before.velocity;
     knot.acceleration += before.acceleration;
@@ -168,7 +168,7 @@ class Chain {
   std::vector<double> begins_;
 };
 
-/// Joins moves to spans: with blends where there is a tolerance, otherwise with stops.
+/// Joins moves to spans: with blends if there is a tolerance, otherwise with stops.
 class Joiner {
  public:
   Joiner(PlannedPath& path, const PathPlanOptions& options) : path_(path), options_(options) {}
@@ -192,7 +192,7 @@ class Joiner {
     if (is_probe) stop();
   }
 
-  /// The axes stand afterwards.
+  /// Ends the span: the axes stand afterwards.
   void stop() {
     end_span();
     chain_.add_to(path_);
@@ -222,7 +222,7 @@ class Joiner {
     taken_mm_ = blend->taken;
   }
 
-  /// Compared with a stop, which needs at least this time for the length that the blend replaces.
+  /// Whether the blend is faster than a stop, which needs at least this time for the replaced length.
   bool is_worthwhile(const CornerBlend& blend) const {
     const SpeedInterval passed =
         interval_of({blend.curve, std::numeric_limits<double>::infinity(), 0, 0.0}, options_.limits);
@@ -241,8 +241,8 @@ class Joiner {
 
   void dwell(const PathMove& move) {
     if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
-    constexpr double kLongestPiece_s = 0.05;  // within the range of a node at any rate
-    // A stop is a separate node, so a board without further nodes stands there.
+    constexpr double kLongestPiece_s = 0.05;  // always within the range of a node
+    // A stop needs a separate node, at which a board without further nodes stands.
     const int least = move.kind == PathMoveKind::stop ? 1 : 0;
     const auto parts = std::max(least, static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s)));
     for (int k = 0; k < parts; ++k) {
@@ -257,11 +257,11 @@ class Joiner {
   const PathPlanOptions& options_;
   Chain chain_{options_};
   std::vector<SpanCurve> span_;
-  double entry_mm_ = 0.0;      ///< tolerance of the corner where the span began
-  double tolerance_mm_ = 0.0;  ///< of the next corner
-  double whole_mm_ = 0.0;      ///< of the newest curve before it was cut
-  double begin_mm_ = 0.0;      ///< replaced by the blend before it
-  double taken_mm_ = 0.0;      ///< of the next curve, replaced by the newest blend
+  double entry_mm_ = 0.0;      ///< tolerance of the corner at the beginning of the span
+  double tolerance_mm_ = 0.0;  ///< tolerance of the next corner
+  double whole_mm_ = 0.0;      ///< length of the newest curve before it was cut
+  double begin_mm_ = 0.0;      ///< length at its beginning replaced by the blend
+  double taken_mm_ = 0.0;      ///< length at the beginning of the next curve replaced by the newest blend
 };
 
 }  // namespace

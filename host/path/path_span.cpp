@@ -11,9 +11,9 @@ namespace host {
 
 namespace {
 
-constexpr double kLongest_s = 0.02;    ///< between knots: a board's look-ahead is a number of knots
+constexpr double kLongest_s = 0.02;    ///< between knots: a board's look-ahead is a fixed number of knots
 constexpr double kLargestTurn = 0.15;  ///< rad between knots: the polynomial is then within 1e-9 of the radius
-constexpr double kCellOfRamp = 0.125;  ///< of the time in which an axis reaches its acceleration: a cell of the warp
+constexpr double kCellOfRamp = 0.125;  ///< cell of the warp, relative to the time for an axis to reach its acceleration
 
 /// Motion of the axes per unit of motion along a curve: magnitudes of the first, second and third derivative by length.
 struct CurveDemand {
@@ -62,7 +62,7 @@ SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits) {
     for (const CurveDemand& d : demands)
       found.acceleration =
           std::min(found.acceleration, least_share(limits.acceleration - speed * speed * d.second, d.first));
-    // Tangential acceleration on a curve is jerk across it; less of the one leaves more of the other.
+    // On a curve, tangential acceleration causes jerk across it, so less acceleration leaves more jerk.
     const double most = found.acceleration;
     for (const double share : {1.0, 0.75, 0.5, 0.35, 0.2, 0.1}) {
       found.acceleration = most * share;
@@ -97,8 +97,7 @@ PathSpan::PathSpan(std::vector<SpanCurve> curves, const PathPlanOptions& options
     times_.push_back(times_.back() + phase.duration_s);
   }
   require_bounded(0, times_.back(), curves_.front().line);
-  // Where curves need a part of the limits, the profile, with one acceleration and jerk per phase, does not use the
-  // rest.
+  // The profile has one acceleration and jerk per phase. If curves need a part of the limits, it does not use the rest.
   const bool is_straight = std::ranges::all_of(curves_, [](const SpanCurve& one) { return one.curve.is_line(); });
   if (is_straight) return;
   cells_ = warp_cells();
@@ -172,7 +171,7 @@ double PathSpan::time_at(double length) const {
   return high;
 }
 
-/// Cells between which the jerk jumps, and no longer than the warp needs.
+/// Cells whose boundaries include the jumps of the jerk, and which are short enough for the warp.
 std::vector<double> PathSpan::warp_cells() const {
   std::vector<double> events = times_;
   for (std::size_t i = 1; i < curves_.size(); ++i) events.push_back(time_at(curves_[i].begin));

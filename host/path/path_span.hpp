@@ -1,4 +1,4 @@
-// A part of a path from rest to rest along curves, and its timing.
+// A part of a path from rest to rest, along curves, with its timing.
 #pragma once
 
 #include <vector>
@@ -13,14 +13,14 @@ struct SpanCurve {
   PathCurve curve;
   double feed_mm_s = 0.0;
   std::size_t line = 0;
-  double begin = 0.0;  ///< along the span
+  double begin = 0.0;  ///< length along the span at its beginning
 };
 
 /// Limits of the motion along a curve.
 SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits);
 
-/// First computes the profile, which has one acceleration and jerk per phase. Where curves need a part of the limits,
-/// the profile does not use all of the rest; a time warp then uses it.
+/// First computes the profile, which has one acceleration and jerk per phase. If curves need a part of the limits, the
+/// profile leaves some of the rest unused; a time warp then uses it.
 class PathSpan {
  public:
   PathSpan(std::vector<SpanCurve> curves, const PathPlanOptions& options);
@@ -33,7 +33,7 @@ class PathSpan {
   double last_begins_s() const { return begins_s(curves_.back()); }
   double begins_s(const SpanCurve& one) const { return factor_ * warp_.warped(time_at(one.begin)); }
 
-  /// Where the polynomials between the knots exceed a limit, gives the warp a smaller share of it and computes the warp
+  /// If the polynomials between the knots exceed a limit, reduces the warp's share of it there and computes the warp
   /// again. False if no limit is exceeded, or if there is no warp.
   bool tighten(const std::vector<PathKnot>& knots);
 
@@ -41,14 +41,15 @@ class PathSpan {
   void stretch(double factor) { factor_ *= factor; }
   double stretched() const { return factor_; }
 
-  /// At rest before and afterwards.
+  /// State at a time; at rest before the beginning and after the end.
   PathKnot at(double time_s) const;
 
   struct Wanted {
     double time_s;
     int weight;
   };
-  /// Knots where the jerk changes, where curves meet, and in between as often as the curve requires; not at the ends.
+  /// Times of knots: where the jerk changes, where curves meet, and in between as often as the curve requires; without
+  /// the ends.
   std::vector<Wanted> knot_times() const;
 
  private:

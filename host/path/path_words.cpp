@@ -47,7 +47,7 @@ PathWords path_words(const PlannedPath& path, const PathScale& scale, const firm
                      const std::vector<BoardPosition>& start) {
   PathWords words{units, {}};
   const std::size_t axes = scale.axes.size();
-  std::vector<std::int64_t> base(axes), at(axes);  // in whole counts; in units from there
+  std::vector<std::int64_t> base(axes), at(axes);  // base in whole counts; at in units from there
   const double grid = std::ldexp(1.0, units.travel_bits);
   for (std::size_t i = 0; i < axes; ++i) {
     base[i] = start[i].counts;
@@ -56,7 +56,7 @@ PathWords path_words(const PlannedPath& path, const PathScale& scale, const firm
     if (std::abs(begins - static_cast<double>(base[i]) - start[i].fraction) > 1.0)
       throw Failure(ExitCode::bad_input, "the path does not begin where the axes stand");
   }
-  std::int64_t time = 0;  // in node units, so that rounding does not add up
+  std::int64_t time = 0;  // in node units, so that rounding errors do not accumulate
   constexpr double kTimeUnits = 1u << firmware::kPathTimeBits;
   for (std::size_t k = 1; k < path.knots.size(); ++k) {
     const PathKnot& knot = path.knots[k];

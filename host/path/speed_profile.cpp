@@ -12,7 +12,7 @@ namespace host {
 namespace {
 
 constexpr double kNear = 1.0 + 1e-9;
-constexpr int kDeepest = 200;  ///< of the recursion: more levels of speed than a path has
+constexpr int kDeepest = 200;  ///< of the recursion: more than the levels of speed of any path
 
 double ramp_time(double change, const TangentialLimits& l) {
   const double full = l.acceleration * l.acceleration / l.jerk;
@@ -35,7 +35,7 @@ void add_ramp(std::vector<SpeedPhase>& phases, double from, double to, const Tan
   add_phase(phases, jerk_time, -jerk);
 }
 
-/// A hump: up from one speed, cruise, and down to another, over some length.
+/// A hump over a given length: up from one speed, cruise, and down to another speed.
 struct Hump {
   double from = 0.0, top = 0.0, to = 0.0, length = 0.0;
   TangentialLimits rising, falling;
@@ -73,7 +73,8 @@ class Profile {
   }
   static bool are_usable(const TangentialLimits& l) { return l.acceleration > 0.0 && l.jerk > 0.0; }
 
-  /// Limits of only those intervals that the ramps of a hump with this top cover. Empty if a ramp is impossible.
+  /// The hump with this top speed; applies only the limits of the intervals that its ramps cover. Empty if a ramp is
+  /// impossible.
   static std::optional<Hump> hump_to(double top, std::span<const SpeedInterval> region, double begin, double from,
                                      double end, double to) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -94,7 +95,8 @@ class Profile {
     return hump;
   }
 
-  /// The highest hump within `most` and the length; empty if the length does not suffice for the change of speed.
+  /// The hump with the highest top speed, at most `most`, that fits the length; empty if the length is too short for
+  /// the change of speed.
   static std::optional<Hump> hump(std::span<const SpeedInterval> region, double begin, double from, double end,
                                   double to, double most) {
     auto found = hump_to(most, region, begin, from, end, to);
@@ -112,7 +114,8 @@ class Profile {
     return found;
   }
 
-  /// The fastest of several tops, because a higher speed on a curve leaves less acceleration for the ramps.
+  /// Tries several top speeds and returns the quickest hump, because a higher speed on a curve leaves less acceleration
+  /// for the ramps.
   static std::optional<Hump> quickest(std::span<const SpeedInterval> region, double begin, double from, double end,
                                       double to, double most) {
     std::optional<Hump> best;
@@ -126,7 +129,7 @@ class Profile {
     return best;
   }
 
-  /// Speeds at both ends are allowed throughout, and the one can be reached from the other.
+  /// Plans a region. The speeds at both ends are allowed throughout, and one can be reached from the other.
   void plan(double begin, double from, double end, double to, int depth) {
     if (!(end > begin)) return;
     const auto region = between(begin, end);
@@ -139,7 +142,7 @@ class Profile {
     const double top = found->top;
     if (!(cruise_end > cruise_begin) || depth == kDeepest) return add(*found);
     const double binding = top * 1.005;
-    // The parts of the cruise that may be faster, and those that may not.
+    // Separates the parts of the cruise that may be faster from those that may not.
     double first_bound = end, last_bound = begin;
     for (const SpeedInterval& interval : region) {
       if (interval.speed > binding || interval.end <= cruise_begin || interval.begin >= cruise_end) continue;
@@ -162,7 +165,7 @@ class Profile {
       add_ramp(phases_, top, to, found->falling);
   }
 
-  /// From the first limiting part to the last: faster in between.
+  /// Plans the cruise from the first limiting part to the last; it may be faster in between.
   void level(std::span<const SpeedInterval> region, double begin, double end, double top, double binding, int depth) {
     double here = begin;
     for (const SpeedInterval& interval : region) {
@@ -176,8 +179,8 @@ class Profile {
     if (here < end) plan(here, top, end, top, depth + 1);
   }
 
-  /// No limit applies at this top, which was chosen for its acceleration: try another, smaller step up if it saves
-  /// time.
+  /// No limit applies at this top speed, which was chosen for its acceleration. Tries another, smaller rise of speed in
+  /// between if that saves time.
   void climb(const Hump& found, double begin, double end, int depth) {
     const double cruise_begin = begin + found.up(), cruise_end = end - found.down();
     const auto region = between(cruise_begin, cruise_end);
@@ -190,11 +193,11 @@ class Profile {
     add_ramp(phases_, found.top, found.to, found.falling);
   }
 
-  /// Both speeds were reached with other limits than those up to a higher speed, so use at most the higher of the two.
+  /// Keeps at most the higher of both speeds, because they were reached with other limits than those at a higher speed.
   void keep(double begin, double from, double end, double to, std::span<const SpeedInterval> region, double most) {
     const double top = std::max(from, to);
     if (const auto found = hump(region, begin, from, end, to, std::min(most, top))) return add(*found);
-    // As in the ramp of the previous level.
+    // The same as in the ramp of the previous level.
     const double time = 2.0 * (end - begin) / (from + to);
     const double jerk = 4.0 * (to - from) / (time * time);
     add_phase(phases_, time / 2.0, jerk);

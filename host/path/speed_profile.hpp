@@ -1,4 +1,4 @@
-// Speed along a path: jerk-limited, from rest to rest, within the limits of each part.
+// Jerk-limited speed profile along a path, from rest to rest, within the limits of each part.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ struct TangentialLimits {
 struct SpeedInterval {
   double begin = 0.0, end = 0.0;
   double speed = 0.0;                              ///< mm/s
-  std::function<TangentialLimits(double)> limits;  ///< that are valid up to a speed
+  std::function<TangentialLimits(double)> limits;  ///< limits that hold up to a given speed
 };
 
 /// A phase of constant jerk.
@@ -32,7 +32,7 @@ SpeedState after(const SpeedState& state, double time_s, double jerk);
 
 /// Profile over consecutive intervals without gaps, from rest at the beginning of the first to rest at the end of the
 /// last. It rises to the lowest speed that the intervals allow, then between the limiting intervals to the next lowest,
-/// and so on. The acceleration is 0 where a limit begins or ends to apply, and otherwise only if necessary.
+/// and so on. The acceleration is 0 where a limit begins or ends to apply, and elsewhere only if necessary.
 std::vector<SpeedPhase> speed_profile(const std::vector<SpeedInterval>& intervals);
 
 }  // namespace host

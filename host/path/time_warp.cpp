@@ -10,12 +10,13 @@ namespace host {
 
 namespace {
 
-using Local = Eigen::Vector3d;  ///< r^2 and its first two derivatives by time, or a gradient to them
-using Basis = Eigen::Matrix3d;  ///< from a cell's three coefficients to them
+using Local = Eigen::Vector3d;  ///< r^2 and its first two derivatives by time, or a gradient with respect to them
+using Basis = Eigen::Matrix3d;  ///< maps a cell's three coefficients to r^2 and its derivatives
 
-constexpr int kPoints = 3;  ///< of a cell that are checked
+constexpr int kPoints = 3;  ///< checked points in a cell
 
-/// Of B-splines over cells that begin at times[cell]; those at the ends have a neighbour of their own length.
+/// Basis of B-splines over cells that begin at times[cell]. Beyond each end follows a further cell of the same length
+/// as the end cell.
 Basis basis_at(const std::vector<double>& times, std::size_t cell, double share) {
   const double own = times[cell + 1] - times[cell];
   const double before = cell > 0 ? times[cell] - times[cell - 1] : own;
@@ -31,12 +32,12 @@ Basis basis_at(const std::vector<double>& times, std::size_t cell, double share)
 
 /// Bounds of r^2 and its derivatives at a checked point.
 struct Checked {
-  std::array<Local, 3> acceleration, jerk;  ///< of each axis, by its limit
-  double most = 0.0;                        ///< of r^2
+  std::array<Local, 3> acceleration, jerk;  ///< of each axis, relative to its limit
+  double most = 0.0;                        ///< largest r^2
 };
 
-/// The sum of times and of the logarithms of the remaining limits, with its gradient and its Hessian (without the
-/// curvature of the jerk's factor).
+/// Barrier function: duration minus weighted logarithms of the distances to the limits, with its gradient and its
+/// Hessian (without the curvature of the jerk's factor).
 class Barrier {
  public:
   Barrier(std::vector<Checked> points, const std::vector<double>& times) : points_(std::move(points)) {
@@ -49,7 +50,7 @@ class Barrier {
   std::size_t coefficients() const { return points_.size() / kPoints + 2; }
   double constraints() const { return 14.0 * static_cast<double>(points_.size()); }
 
-  /// Empty beyond a limit.
+  /// Value of the barrier function; empty if a limit is exceeded.
   std::optional<double> value(const Eigen::VectorXd& c, double weight) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -74,11 +75,11 @@ class Barrier {
     return sum;
   }
 
-  /// Newton's step.
+  /// Newton step.
   Eigen::VectorXd step(const Eigen::VectorXd& c, double weight) const {
     const auto n = static_cast<Eigen::Index>(coefficients());
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    Eigen::MatrixXd band = Eigen::MatrixXd::Zero(3, n);  // band(k, i): of i and i + k
+    Eigen::MatrixXd band = Eigen::MatrixXd::Zero(3, n);  // band(k, i): element (i, i + k)
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i / kPoints);
       const Basis& b = basis_[i];
@@ -114,7 +115,7 @@ class Barrier {
  private:
   static constexpr double kLeast = 1e-3;
 
-  /// By Cholesky's factors without roots, in the band.
+  /// Solves the banded system by Cholesky factors without roots (LDL^T).
   static Eigen::VectorXd solved(Eigen::MatrixXd band, Eigen::VectorXd x) {
     const Eigen::Index n = x.size();
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -150,7 +151,7 @@ Checked checked(const WarpDemand& d, const AxisLimits& limits) {
   return made;
 }
 
-/// The constant rate that is inside all limits.
+/// A constant rate within all limits, as starting point.
 std::optional<Eigen::VectorXd> beginning(const Barrier& barrier) {
   for (double square = 0.95; square > 0.2; square *= 0.9) {
     Eigen::VectorXd c = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(barrier.coefficients()), square);
@@ -160,7 +161,7 @@ std::optional<Eigen::VectorXd> beginning(const Barrier& barrier) {
 }
 
 Eigen::VectorXd quickest(const Barrier& barrier, Eigen::VectorXd c) {
-  // The gap to the optimum is the weight times the number of limits, where the problem is convex.
+  // For a convex problem the gap to the optimum is the weight times the number of limits.
   constexpr double kFirstGap = 0.3, kLastGap = 1e-3, kLess = 0.45;
   for (double gap = kFirstGap; gap > kLastGap; gap *= kLess) {
     const double weight = gap * barrier.time(c) / barrier.constraints();
@@ -203,7 +204,7 @@ TimeWarp::TimeWarp(std::vector<double> cells, const std::function<WarpDemand(dou
     *this = {};
     return;
   }
-  constexpr double kNothing = 1e-5;  // in the square of a cell: the fastest axis sees a thousandth of its jerk of it
+  constexpr double kNothing = 1e-5;  // ignored change of r^2 in a cell: 0.1 % of the fastest axis's jerk
   double before = 0.0;
   for (std::size_t i = 0; i + 1 < cells_.size(); ++i) {
     const double bend = basis_at(cells_, i, 0.5).row(2).dot(Eigen::Map<const Local>(&square_[i]));
@@ -219,7 +220,7 @@ TimeWarp::Square TimeWarp::square_at(std::size_t cell, double share) const {
 }
 
 double TimeWarp::passed(std::size_t cell, double share) const {
-  // Gauss, three points.
+  // Gauss quadrature with three points.
   const double off = std::sqrt(0.6), half = share / 2.0;
   return (cells_[cell + 1] - cells_[cell]) * half / 9.0 *
          (5.0 / std::sqrt(square_at(cell, half * (1.0 - off)).value) + 8.0 / std::sqrt(square_at(cell, half).value) +

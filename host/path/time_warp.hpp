@@ -1,4 +1,4 @@
-// Makes a motion along a path faster within the same limits by changing its time scale.
+// Makes a motion along a path faster, within the same limits, by changing its time scale.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Load of the axes at one time of a motion, and the highest speed there.
+/// Demand on the axes at one time of a motion, and the highest rate there.
 struct WarpDemand {
   PathPoint velocity, acceleration, jerk;
   double fastest = 0.0;  ///< the rate at which the feed is reached
@@ -22,9 +22,9 @@ class TimeWarp {
  public:
   /// No warp: t = tau.
   TimeWarp() = default;
-  /// The fastest warp over cells between these times, to within one or two thousandths, by an interior-point method
-  /// that begins at a constant rate. The motion begins at rest at 0 and ends at rest; `demand`: that of a part of the
-  /// motion between two times.
+  /// The fastest warp over cells between these times, to within 0.2 %, by an interior-point method that starts at a
+  /// constant rate. The motion begins at rest at time 0 and ends at rest. `demand`: demand of the motion between two
+  /// times.
   TimeWarp(std::vector<double> cells, const std::function<WarpDemand(double, double)>& demand,
            const AxisLimits& limits);
 
@@ -34,9 +34,9 @@ class TimeWarp {
     double rate = 1.0, rate_change = 0.0;  ///< dtau / dt, and its derivative by t, 1/s
   };
   State at(double warped_s) const;
-  /// t for a tau.
+  /// The time t for a time tau.
   double warped(double time_s) const;
-  /// Times t between two cells at which the change of the rate jumps noticeably.
+  /// Times t of the cell boundaries at which the change of the rate jumps noticeably.
   const std::vector<double>& bends() const { return bends_; }
 
  private:
@@ -47,8 +47,8 @@ class TimeWarp {
   double passed(std::size_t cell, double share) const;
 
   std::vector<double> cells_;
-  std::vector<double> square_;  ///< coefficients of B-splines of second degree: of r^2
-  std::vector<double> times_;   ///< t where the cells begin and end
+  std::vector<double> square_;  ///< coefficients of r^2 in B-splines of second degree
+  std::vector<double> times_;   ///< times t of the cell boundaries
   std::vector<double> bends_;
 };
 

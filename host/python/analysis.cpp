@@ -1,4 +1,4 @@
-// identify, compare, diagnose, add, improve, design: what the commands of the same names call.
+// identify, compare, diagnose, add, improve, design: the functions of the commands with the same names.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

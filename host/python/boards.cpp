@@ -1,4 +1,4 @@
-// Boards: parameters, control loops and captures, and a simulated one within this process.
+// Boards: parameters, control loops and captures, and a simulated board within this process.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -42,7 +42,7 @@ class SimulatedBoard {
   SimulatedBoard& operator=(const SimulatedBoard&) = delete;
   ~SimulatedBoard() { end(); }
 
-  /// Throws what ended it before.
+  /// Ends the board. Throws the exception that ended it before, if any.
   void close() {
     end();
     if (fault_) std::rethrow_exception(std::exchange(fault_, {}));
@@ -72,7 +72,7 @@ std::unique_ptr<SimulatedBoard> simulated_board(const py::object& model, const s
   });
 }
 
-/// Which one, and how long it may take to answer, s.
+/// The board, and the time-out for its answers, s.
 struct Device {
   std::string words;
   double patience_s;
@@ -106,7 +106,7 @@ void disable(const Device& device) {
   });
 }
 
-/// The capture of `capture` without further options: the usual channels at loop rate.
+/// Settings of a capture with the usual channels at loop rate.
 host::CaptureSettings settings_of(const firmware::ParameterValues& values, const std::string& axis, double seconds,
                                   const std::vector<std::string>& jogs) {
   host::CaptureSettings settings;

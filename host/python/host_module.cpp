@@ -1,5 +1,5 @@
-// The module axistool._host: the library's functions for the package's own use. Results are their JSON documents and
-// files in the project's formats; the package gives them types.
+// The module axistool._host: the library's functions, for use by the package. Results are JSON documents and files in
+// the project's formats; the package converts them to types.
 #include <glog/logging.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// The exception of the failure's exit code, in the same words.
+/// Raises the Python exception of the failure's exit code, with the same message.
 void raise(const host::Failure& failure) {
   const py::object error =
       py::module_::import("axistool.errors").attr("error_of")(static_cast<int>(failure.code), failure.what());
@@ -30,13 +30,13 @@ host::RecordColumns read_columns(const std::string& path) {
   result.header = log.header;
   for (host::LogColumn& column : log.columns) {
     if (!column.fault.empty()) throw host::Failure(host::ExitCode::bad_input, path + ": " + column.fault);
-    if (column.name.empty()) column.name = "#" + std::to_string(result.columns.size() + 1);  // as mappings call it
+    if (column.name.empty()) column.name = "#" + std::to_string(result.columns.size() + 1);  // the name in mappings
     result.columns.emplace_back(column.name, std::move(column.values));
   }
   return result;
 }
 
-/// As `axistool import` does.
+/// Imports a log as `axistool import` does.
 host::RecordColumns import_columns(const std::string& path, const std::string& map, std::optional<double> resample_s,
                                    const std::string& drive, const std::vector<std::string>& unwrap) {
   host::ImportOptions options{map.empty() ? std::vector<host::Mapping>{} : host::parse_mappings(map), resample_s,

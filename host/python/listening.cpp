@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Short enough for a user at the keyboard, long enough to cost no time.
+/// Short enough for Ctrl-C to respond at once, long enough to cost no time.
 constexpr std::chrono::milliseconds kInterval{50};
 
 class Listener {
@@ -36,7 +36,7 @@ class Listener {
   }
 
  private:
-  /// In the worker's thread.
+  /// Runs in the worker thread.
   void carry_out(const std::function<void(const Told&)>& work) {
     const host::CancelledBy scope(&cancelled_);
     try {
@@ -65,7 +65,7 @@ class Listener {
     }
   }
 
-  /// With Python's lock held: handles signals, and reports progress if there is any.
+  /// Handles signals, and reports new progress. Needs Python's lock.
   void tell() {
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -89,7 +89,7 @@ class Listener {
   std::condition_variable changed_;
   double share_ = 0.0, told_ = 0.0;
   bool ended_ = false;
-  std::exception_ptr raised_, thrown_;  ///< by Python, and by the work
+  std::exception_ptr raised_, thrown_;  ///< exceptions of Python, and of the work
 };
 
 }  // namespace
@@ -97,7 +97,7 @@ class Listener {
 std::thread quiet_thread(std::function<void()> work) {
   sigset_t all, before;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // a thread begins with its maker's
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // the new thread inherits this mask
   std::thread thread(std::move(work));
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   return thread;

@@ -1,4 +1,4 @@
-// Long work beside the interpreter: it runs without Python's lock, while the caller's thread handles Ctrl-C.
+// Runs long work without Python's lock, while the caller's thread handles Ctrl-C.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -13,12 +13,12 @@ namespace axistool_python {
 /// Receives the finished share of the work, 0..1, from any thread (host::ShareDone).
 using Told = std::function<void(double)>;
 
-/// A thread that no signal interrupts; signals are for Python's thread.
+/// A thread with all signals blocked, so that Python's thread handles them.
 std::thread quiet_thread(std::function<void()> work);
 
 /// Runs `work` in a separate thread. Meanwhile, in the caller's thread, calls `progress` (a callable of share and
-/// `what`, or None) and lets Python handle signals. An exception of either cancels the work and is thrown here;
-/// otherwise exceptions of the work are thrown.
+/// `what`, or None) and lets Python handle signals. An exception of either cancels the work and is rethrown; otherwise
+/// an exception of the work is rethrown.
 void listen_while(const pybind11::object& progress, const std::string& what,
                   const std::function<void(const Told&)>& work);
 

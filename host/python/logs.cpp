@@ -1,4 +1,4 @@
-// open, sheet, cut, shift: from a log and a data sheet to records.
+// open, sheet, cut, shift: make records from a log and a data sheet.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -17,7 +17,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// The document; then each record's name, axis, columns and header; then the mapping as a file holds it.
+/// Returns the document; each record's name, axis, columns and header; and the text of the mapping file.
 py::tuple open_logs(const std::vector<std::string>& paths, const py::object& sheet, const std::string& map,
                     const std::string& hal, const std::string& drive, std::optional<double> torque_constant,
                     std::optional<double> period_s) {
@@ -51,7 +51,7 @@ std::string sheet(const std::string& name, bool is_rotary, bool by_current, std:
   return host::sheet_text(values);
 }
 
-/// `text` of a record in memory, or empty: then the file at `path`.
+/// `text`: text of a record in memory; if empty, reads the file at `path`.
 py::tuple cut(const std::string& path, const std::string& text, double from_s, double to_s) {
   return to_python(result_of(py::none(), "cut", [&](const auto&) {
     const std::string whole = text.empty() ? host::read_file(path, host::kRecordSize) : text;

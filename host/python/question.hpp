@@ -15,7 +15,7 @@
 namespace axistool_python {
 
 using Names = std::vector<std::string>;
-/// The document of a result, and the file that goes with it: a model, parameters, or a run.
+/// The document of a result, and the text of its file: a model, parameters, or a run.
 using Answer = std::pair<std::string, std::string>;
 
 struct Question {

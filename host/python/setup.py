@@ -1,4 +1,4 @@
-"""Builds the module axistool._host with the project's CMake, in AXIS_BUILD or where `make` builds."""
+"""Builds the module axistool._host with the project's CMake, in AXIS_BUILD or in the build folder of `make`."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ LISTS = [PROJECT / "cmake" / "packages" / name for name in ("build.txt", "python
 
 
 def missing_packages() -> list[str]:
-    """Of Debian; elsewhere CMake says what it lacks."""
+    """Missing Debian packages; on other systems CMake reports missing dependencies."""
     if shutil.which("dpkg-query") is None:
         return []
     wanted = [line.split("#")[0].strip() for one in LISTS for line in one.read_text().splitlines()]

@@ -16,11 +16,11 @@ struct Path {
   std::string text;
 };
 
-/// Read in the worker thread, after Python's part.
+/// A record, read in the worker thread after the conversion from Python.
 class RecordSource {
  public:
-  /// A path (str), or a tuple of columns (dict of NumPy arrays by their names) and header (dict of str). `name`: of
-  /// data in memory, for messages.
+  /// A path (str), or a tuple of columns (dict of NumPy arrays by their names) and header (dict of str). `name`: name
+  /// of data in memory, for messages.
   RecordSource(const pybind11::handle& given, std::string name);
   host::Record read() const;
   /// The path; for data in memory, its name for messages.
@@ -31,9 +31,9 @@ class RecordSource {
   std::variant<Path, host::RecordColumns> given_;
 };
 
-/// The same for a sequence.
+/// Converts a sequence of records.
 std::vector<RecordSource> record_sources(const pybind11::sequence& given, const std::string& role);
-/// Their names, with commas.
+/// The names, separated by commas.
 std::string names_of(const std::vector<RecordSource>& sources);
 std::vector<host::Record> read_all(const std::vector<RecordSource>& sources);
 

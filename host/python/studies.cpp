@@ -1,4 +1,4 @@
-// friction, plan, bode, circle, export, effects, scoreboard: what the commands of the same names call.
+// friction, plan, bode, circle, export, effects, scoreboard: the functions of the commands with the same names.
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -48,7 +48,7 @@ Answer friction(const py::sequence& given, const py::object& model, const std::s
   });
 }
 
-/// The document, and the run's file; without a run an empty text.
+/// Returns the document, and the text of the run's file (empty without a run).
 Answer plan(const py::object& model, const py::sequence& train, const py::sequence& validate,
             const std::vector<Names>& rivals, const std::string& box, double most_steps, const std::string& output,
             const std::string& report, const py::object& progress) {
@@ -69,7 +69,7 @@ Answer plan(const py::object& model, const py::sequence& train, const py::sequen
   });
 }
 
-/// The controller that `parameters` (a file's text) give the axis, else the one that design makes of the model.
+/// The controller with `parameters` (text of a file), else the one that design makes from the model.
 std::optional<firmware::AxisParameters<float>> controller_of(const std::optional<sim::DriveDescription>& model,
                                                              const std::string& parameters) {
   if (!parameters.empty()) {
@@ -82,7 +82,7 @@ std::optional<firmware::AxisParameters<float>> controller_of(const std::optional
   return host::designed_parameters(*model, host::design_axis(*model, {}));
 }
 
-/// The document, and the model with what the response shows; without a model or a fit an empty text.
+/// Returns the document, and the text of the model with the measured effects (empty without a model or a fit).
 Answer bode(const py::sequence& given, const py::object& model, const std::string& parameters,
             const std::string& report) {
   const std::vector<RecordSource> sources = record_sources(given, "record");
@@ -116,7 +116,7 @@ std::string circle(const py::sequence& given, const py::sequence& models, const 
   });
 }
 
-/// The document, and each file's path and text.
+/// Returns the document, and path and text of each file.
 std::pair<std::string, std::vector<std::pair<std::string, std::string>>> export_model(const py::object& model,
                                                                                       const std::string& to,
                                                                                       const std::string& path,

@@ -29,10 +29,10 @@ AxisController::AxisController(const firmware::AxisParameters<float>& p)
   gain_ << real(p.Kc[0]), real(p.Kc[1]), p.disturbance_cancellation_on ? -1.0 : 0.0;
 }
 
-/// Of the coefficients: s / w is (z - 1) / (g (z + 1)), 2 damping what a1 leaves of g.
+/// Evaluates the filters from their coefficients: s / w = (z - 1) / (g (z + 1)); the damping follows from a1 and g.
 std::complex<double> AxisController::filter(double f_Hz) const {
   using Complex = std::complex<double>;
-  const Complex s = Complex(0.0, std::tan(std::numbers::pi * f_Hz * period_s_));  // w = g here
+  const Complex s = Complex(0.0, std::tan(std::numbers::pi * f_Hz * period_s_));  // for w = g
   Complex product = 1.0;
   for (const firmware::BiquadParameters<float>& one : filters_) {
     if (!one.on) continue;

@@ -1,4 +1,4 @@
-// The board's controller as a frequency response: estimator, feedback, filters (firmware/core/axis.hpp).
+// Frequency response of the board's controller: estimator, feedback, filters (firmware/core/axis.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// With the loop cut at the drive's input, u = -C y for y = [position, speed]. C includes the estimator's use of the
-/// command.
+/// With the loop cut at the drive's input, u = -C y for y = [position, speed]. C includes the estimator's input from
+/// the command.
 class AxisController {
  public:
   explicit AxisController(const firmware::AxisParameters<float>& parameters);

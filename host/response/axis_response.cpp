@@ -70,7 +70,7 @@ json distortion_json(const std::vector<DistortionLine>& lines) {
   return {{"f_Hz", f_Hz}, {"level", level}};
 }
 
-/// Empty in a document of a version without it.
+/// Empty for a document of an older version without distortion.
 std::vector<DistortionLine> read_distortion(const json& document, const char* which) {
   std::vector<DistortionLine> lines;
   if (!document.contains("distortion")) return lines;
@@ -80,7 +80,7 @@ std::vector<DistortionLine> read_distortion(const json& document, const char* wh
   return lines;
 }
 
-/// Magnitudes beyond these are not of a drive: 1e-9 to 1e9 of the plant's unit, squared.
+/// Squared limits of plausible magnitudes of a drive: 1e-9 to 1e9 in the plant's unit.
 constexpr double kLeast = 1e-18, kMost = 1e18;
 
 bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& response) {

@@ -15,12 +15,12 @@ namespace host {
 struct AxisResponse {
   FrequencyResponse response;
   std::optional<PlantFit> fit;         ///< absent if too few lines are significant
-  std::optional<OpenLoop> loop;        ///< with a controller only, and a fit
+  std::optional<OpenLoop> loop;        ///< only with a controller and a fit
   std::optional<LoopMargins> margins;  ///< likewise
 };
 
-/// `controller`: that of the axis, now or later; nullptr if unknown. Throws what frequency_response() and open_loop()
-/// throw.
+/// `controller`: the present or a future controller of the axis; nullptr if unknown. Throws as frequency_response() and
+/// open_loop().
 AxisResponse analyse_response(const std::vector<Record>& records, const firmware::AxisParameters<float>* controller);
 
 /// The same response with another controller.

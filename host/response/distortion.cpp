@@ -63,7 +63,7 @@ class Gaps {
     return static_cast<double>(line) / (static_cast<double>(run.excitation.period) * run.sample_period_s);
   }
 
-  /// Mean of the excited lines on both sides of a gap.
+  /// Mean power of the excited lines on both sides of a gap.
   double command_power(std::size_t gap) const {
     double sum = 0.0, count = 0.0;
     for (const PeriodicRun& run : runs_)

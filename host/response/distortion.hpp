@@ -1,4 +1,4 @@
-// Even and odd nonlinearity of a drive, from the lines that a multisine leaves out.
+// Even and odd nonlinearity of a drive, from the lines that a multisine does not excite.
 #pragma once
 
 #include <vector>

@@ -52,7 +52,7 @@ std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicR
   return runs;
 }
 
-/// Where bands overlap, the mean of both weighted by their variance.
+/// Where bands overlap, averages their lines, weighted by inverse variance.
 void merge_equal_lines(std::vector<ResponseLine>& lines) {
   std::ranges::stable_sort(lines, {}, &ResponseLine::f_Hz);
   std::vector<ResponseLine> merged;

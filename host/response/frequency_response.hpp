@@ -20,11 +20,11 @@ struct ResponseLine {
   /// For position (without one, for speed): standard deviation of the estimate by noise alone, and deviation of one
   /// realisation of the excitation from the best linear approximation, beyond noise.
   double noise = 0.0, nonlinearity = 0.0;
-  double coherence = 1.0;  ///< of command and response; 1 if repeated periods separate the noise
+  double coherence = 1.0;  ///< between command and response; 1 if repeated periods separate the noise
   double degrees = 1.0;    ///< degrees of freedom of the covariance
 };
 
-/// Response at lines without excitation, between two excited lines: beyond noise, it is distortion.
+/// Distortion: response beyond noise at lines without excitation between two excited lines.
 struct DistortionLine {
   double f_Hz = 0.0;
   double level = 0.0;  ///< RMS per volt of the neighbouring excited lines, in the unit of `plant`; 0 if below the noise
@@ -57,8 +57,8 @@ std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel);
 /// exact `weights`: Student's factor times the standard deviation of one part.
 double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights);
 
-/// Whether weights' * plant is known well enough for a fit: both parts to 30 % of it. A line at a frequency that the
-/// machine excites itself while it moves (cogging, once per turn) is not.
+/// Whether weights' * plant is accurate enough for a fit: real and imaginary part to 30 % of its magnitude. Lines at
+/// frequencies that the moving machine itself excites (cogging, once per turn) are not.
 bool stands_out(const ResponseLine& line, const Eigen::Vector2cd& weights);
 
 /// The frequency response of the records of one machine. Records with an excitation of whole periods (`axistool excite

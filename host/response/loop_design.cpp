@@ -14,10 +14,9 @@ namespace host {
 namespace {
 
 constexpr double kLowest_Hz = 3.0;
-constexpr double kHighestShare = 0.12;  ///< of the control rate: limit of pole placement on a rigid drive
+constexpr double kHighestShare = 0.12;  ///< of the control rate: highest bandwidth for pole placement on a rigid drive
 constexpr double kStep = 1.04;
-/// A notch is tried at the resonance and beside it (farther from the crossover, it costs less phase), with these
-/// shapes.
+/// Frequencies relative to the resonance at which a notch is tried: farther from the crossover it costs less phase.
 constexpr std::array kPlaces = {0.9, 1.0, 1.12};
 constexpr std::array kDampings = {0.15, 0.3, 0.6};
 constexpr std::array kDepths = {0.05, 0.2, 0.45};
@@ -28,7 +27,7 @@ AxisDesign design_at(const LoopTask& drive, double bandwidth_Hz) {
   return design_axis(drive.model, options);
 }
 
-/// Lowers `best_modulus` to this drive's if the loop is stable.
+/// Whether the loop meets the requirements. If it is stable, also lowers `best_modulus` to this drive's modulus margin.
 bool keeps(const LoopTask& drive, const LoopAim& aim, const ControlFilterChoice& filters, double bandwidth_Hz,
            double& best_modulus) {
   const auto parameters = designed_parameters(drive.model, design_at(drive, bandwidth_Hz), filters);

@@ -12,10 +12,10 @@ namespace host {
 
 /// Requirements on the loop with the measured response.
 struct LoopAim {
-  std::optional<double> modulus;       ///< modulus margin to keep; without it the bandwidth is that of `options`
-  std::optional<double> crossover_Hz;  ///< largest, of the open loop
-  bool seek_notch = false;             ///< at the resonance where it raises the bandwidth most
-  ControlFilterChoice filters;         ///< given by the user
+  std::optional<double> modulus;       ///< modulus margin to keep; if empty, the bandwidth is that of `options`
+  std::optional<double> crossover_Hz;  ///< largest crossover frequency of the open loop
+  bool seek_notch = false;             ///< place a notch at the resonance where it raises the bandwidth most
+  ControlFilterChoice filters;         ///< filters given by the user
 };
 
 struct LoopDesign {
@@ -25,7 +25,7 @@ struct LoopDesign {
   AxisResponse after;
 };
 
-/// A drive for which controllers are tried.
+/// A drive on which controllers are tried.
 struct LoopTask {
   const sim::DriveDescription& model;
   const DesignOptions& options;  ///< all except the bandwidth

@@ -24,7 +24,7 @@ constexpr std::size_t kNearest = 5;
 constexpr int kRepetitions = 200;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Weights of the nearest measured lines for the value of a straight line over log f fitted to them.
+/// Local linear smoother: fits a straight line over log f to the nearest measured lines. Holds their weights.
 struct Smoother {
   std::size_t first = 0;
   std::vector<double> weight;
@@ -88,7 +88,7 @@ std::vector<double> fine_frequencies(const std::vector<double>& lines, const Pla
   return f;
 }
 
-/// Everything that is the same in each repetition.
+/// Values that are the same in each repetition.
 class FineLoop {
  public:
   FineLoop(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller) {
@@ -150,7 +150,7 @@ class FineLoop {
   std::vector<Smoother> smoothers_;
 };
 
-/// NaN if there is none.
+/// Margins; NaN for a margin that does not exist.
 struct Values {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   bool is_stable = true;

@@ -16,7 +16,7 @@ struct OpenLoop {
   std::vector<double> f_Hz;
   std::vector<std::complex<double>> L;
   std::vector<double> half_width;  ///< of a 95 % interval of the real part, the imaginary part or the magnitude of L
-  /// On a finer grid: the fit times the ratio of the measured lines to it.
+  /// L on a finer grid: from the fit times the smoothed ratio of the measured lines to it.
   std::vector<double> fine_f_Hz;
   std::vector<std::complex<double>> fine_L;
 };
@@ -25,7 +25,7 @@ struct OpenLoop {
 /// loop are negative.
 struct LoopMargins {
   bool is_stable = true;                   ///< by Nyquist's criterion on the measured response
-  std::optional<Interval95> gain_dB;       ///< allowed increase of the gain, at the lowest frequency of that kind
+  std::optional<Interval95> gain_dB;       ///< allowed increase of the gain, at the lowest phase crossover
   std::optional<Interval95> phase_deg;     ///< smallest over all frequencies with |L| = 1
   std::optional<Interval95> modulus;       ///< smallest distance of L from -1; 1/max|S|
   std::optional<Interval95> crossover_Hz;  ///< lowest frequency at which |L| falls below 1
@@ -36,7 +36,7 @@ struct LoopMargins {
 /// tachometer and the records lack the speed.
 OpenLoop open_loop(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller);
 
-/// The drive between its lines: the fit times the smoothed ratio of the measured lines to it.
+/// The drive between its measured lines: the fit times the smoothed ratio of the lines to it.
 struct FinePlant {
   std::vector<double> f_Hz;
   std::vector<Eigen::Vector2cd> plant;

@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// In sampling periods: the uncertainty of fits and clocks.
+/// Smallest significant delay in sampling periods: the uncertainty of fits and clocks.
 constexpr double kLeastDelay = 0.05;
 
 bool is_possible(const sim::EffectInfo& info, const char* id, double value) {
@@ -36,13 +36,13 @@ void put_compliance(const PlantFit& fit, const std::string& from, ModelStarts& s
   if (fit.resonances.empty()) return;
   const Resonance& mode = fit.resonances.front();
   const sim::EffectInfo& info = *sim::find_effect("compliance");
-  // At the motor, the mode's share is load inertia over motor inertia; at the table it is -1 and determines neither.
+  // Measured at the motor, the mode's share is load inertia over motor inertia. At the table it is always -1.
   const double seen = mode.speed_share > 0.0 ? mode.speed_share : mode.position_share;
   const double load = seen / (1.0 + seen);
   const std::string text = fmt::format("resonance at {:.4g} Hz", mode.f_Hz.value);
   if (!(seen > 0.0) || !is_possible(info, "load_fraction", load) || !is_possible(info, "resonance", mode.f_Hz.value) ||
       !is_possible(info, "damping_ratio", mode.damping.value)) {
-    starts.said.push_back(text + ": no part of two masses that is seen at the motor; left out");
+    starts.said.push_back(text + ": does not match two masses measured at the motor; left out");
     return;
   }
   sim::EffectEntry& entry = entry_of(starts.model, "compliance");
@@ -61,7 +61,7 @@ void put_delay(const PlantFit& fit, const std::string& from, ModelStarts& starts
   put(entry, "delay", delay);
   entry.from = from;
   starts.said.push_back(
-      fmt::format("delay of {:.3g} ms: input_delay (a current loop of {:.0f} Hz turns the phase as much)",
+      fmt::format("delay of {:.3g} ms: input_delay (a current loop of {:.0f} Hz gives the same phase)",
                   1e3 * delay.value, 0.5 / (std::numbers::pi * delay.value)));
 }
 

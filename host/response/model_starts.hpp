@@ -11,12 +11,12 @@ namespace host {
 
 struct ModelStarts {
   sim::DriveDescription model;
-  std::vector<std::string> said;  ///< effects that were added, and those that were left out with the reason
+  std::vector<std::string> said;  ///< messages: effects that were added, and those left out with the reason
 };
 
 /// The model with `compliance` from the lowest resonance and `input_delay` from the delay, with their intervals, if
-/// they are significant and within the catalogue's bounds; held values stay. A current-loop lag of the same time has
-/// nearly the same phase, and `said` mentions it. `from`: the records' name.
+/// they are significant and within the catalogue's bounds; held values are kept. A current-loop lag of the same time
+/// has nearly the same phase, and `said` mentions it. `from`: the records' name.
 ModelStarts with_response(const sim::DriveDescription& model, const PlantFit& fit, const std::string& from);
 
 }  // namespace host

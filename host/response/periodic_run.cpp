@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kSettling = 0.25;  ///< periods after the excitation has reached its full size
 constexpr double kFade = 1.0;       ///< periods in which the board fades the excitation in
-constexpr std::size_t kHops = 8;    ///< of the window that looks for the excitation, in a period
-constexpr double kFullShare = 0.7;  ///< of the largest power: from here on most of the window is at full size
-constexpr double kPartly = 0.6;     ///< part of such a window that may still belong to the fade-in
+constexpr std::size_t kHops = 8;    ///< steps per period of the window that searches for the excitation
+constexpr double kFullShare = 0.7;  ///< relative to the largest power: above it most of the window has full amplitude
+constexpr double kPartly = 0.6;     ///< part of such a window that may belong to the fade-in
 
 struct Stretch {
   std::size_t from = 0, to = 0;
@@ -54,7 +54,7 @@ Stretch longest(std::size_t count, const Fits& fits) {
   return best;
 }
 
-/// Where `x` repeats after one period, within `tolerance`.
+/// The range in which `x` repeats after one period, within `tolerance`.
 Stretch periodic_stretch(const std::vector<double>& x, std::size_t period, double tolerance) {
   if (x.size() <= period) return {};
   Stretch found =
@@ -63,7 +63,7 @@ Stretch periodic_stretch(const std::vector<double>& x, std::size_t period, doubl
   return found;
 }
 
-/// Where the command holds the lines at full size.
+/// The range in which the command contains the lines at full amplitude.
 Stretch loud_stretch(const Record& record, const MultisineHeader& excitation) {
   const std::size_t hop = std::max<std::size_t>(1, excitation.period / kHops);
   std::vector<double> power;
@@ -104,7 +104,7 @@ Stretch steady_stretch(const Record& record, const MultisineHeader& excitation) 
   const auto begin = std::ranges::find_if(record.w_ref, [&](double speed) { return std::abs(speed) > 1e-6 * most; });
   const auto full = static_cast<std::size_t>(begin - record.w_ref.begin()) +
                     static_cast<std::size_t>(kFade * static_cast<double>(excitation.period));
-  // After the fade-in; a constant position means that the axis does not jog.
+  // A constant position means that the axis does not jog.
   const Stretch found = longest(record.size(), [&](std::size_t k) {
     if (k < full || k + 1 >= record.size() || std::abs(record.w_ref[k]) < 0.05 * most) return false;
     if (!excitation.is_at_reference) return std::abs(record.w_ref[k + 1] - record.w_ref[k]) <= 1e-3 * most;
@@ -168,7 +168,7 @@ PeriodicRun periodic_run(const Record& record, const MultisineHeader& excitation
     throw Failure(
         ExitCode::refused,
         fmt::format("{}: {} samples of the excitation are steady, which is less than two of its periods of {}: "
-                    "record longer, or in a wider box, so that the jog beneath does not turn round",
+                    "record longer, or in a wider box, so that the jog does not reverse",
                     record.path, steady.length(), excitation.period));
   PeriodicRun run{excitation, record.sample_period_s, {}, {}, {}, {}, {}};
   for (std::size_t line = excitation.lines.front(); line <= excitation.lines.back(); ++line)

@@ -18,7 +18,7 @@ struct MultisineHeader {
   bool is_at_reference = false;  ///< added to the reference instead of the command
 };
 
-/// Empty if the header has none. Throws Failure(bad_input) for an inconsistent one.
+/// The multisine of a record's header; empty if it has none. Throws Failure(bad_input) if it is inconsistent.
 std::optional<MultisineHeader> multisine_of(const Record& record);
 
 /// Spectra of command, position and speed in each whole period of the steady part.
@@ -30,7 +30,7 @@ struct PeriodicRun {
     std::complex<double> u, x, w;
   };
   std::vector<std::vector<Sample>> period;
-  /// The same at lines between them without excitation: odd ones and even ones.
+  /// The same at unexcited lines between them, odd and even.
   std::vector<std::size_t> odd_lines, even_lines;
   std::vector<std::vector<Sample>> odd, even;
 };

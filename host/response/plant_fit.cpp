@@ -23,14 +23,14 @@ constexpr int kAliases = 4;            ///< images of the spectrum counted on ea
 constexpr double kLeastSpread = 2e-3;  ///< relative: smaller uncertainties of lines are raised to this
 constexpr int kIterations = 100, kTrial = 20;
 constexpr std::size_t kMostModes = 3;
-constexpr double kMostDamping = 0.3;  ///< above it, it is a slope and no resonance
+constexpr double kMostDamping = 0.3;  ///< of a resonance
 constexpr double kStartDamping = 0.03;
-constexpr double kEarns = 14.0;  ///< decrease of chi^2 by a mode with four parameters; 9.5 is the 5 % point of chance
-constexpr double kEarnsShare = 0.1;  ///< and at least this part of the residual
-constexpr double kLeastShare = 0.1;  ///< of the rigid part, at the resonance; less does not count as a mode
+constexpr double kEarns = 14.0;      ///< required decrease of chi^2 by a mode with four parameters; 9.5 has p = 0.05
+constexpr double kEarnsShare = 0.1;  ///< required decrease as a share of the residual
+constexpr double kLeastShare = 0.1;  ///< smallest mode at its resonance, relative to the rigid part
 
-constexpr double kLagTells = 4.0;  ///< chi^2 by which a lag must be better than a delay: 5 % by chance
-constexpr double kNoDelay = 0.05;  ///< of a sample; below it there is neither
+constexpr double kLagTells = 4.0;  ///< required decrease of chi^2 by a lag instead of a delay; p = 0.05
+constexpr double kNoDelay = 0.05;  ///< smallest significant delay or lag, in samples
 
 // Parameters of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
 constexpr std::size_t kRigid = 5, kPerMode = 4, kDelay = 3;
@@ -95,7 +95,7 @@ class Deviations {
   double highest() const { return response_.lines.back().f_Hz; }
   double sample_period_s() const { return response_.sample_period_s; }
 
-  /// Gain of a double integrator, from the middle lines.
+  /// Starting value of the gain: a double integrator through the middle lines.
   double start_gain(Eigen::Index channel) const {
     std::vector<double> gains;
     for (const Point& point : points_)
@@ -206,7 +206,7 @@ bool is_mode(const double* mode, const Deviations& deviations) {
   return f > deviations.lowest() && f < deviations.highest() && at_resonance > kLeastShare && damping < kMostDamping;
 }
 
-/// An earlier mode within the width of this one: both describe one resonance.
+/// Whether an earlier mode lies within the width of this one, so that both describe one resonance.
 bool has_twin(const std::vector<double>& value, std::size_t at) {
   for (std::size_t other = kRigid; other < at; other += kPerMode)
     if (std::abs(value[other] - value[at]) < std::exp(value[other + 1]) + std::exp(value[at + 1])) return true;

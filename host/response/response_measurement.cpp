@@ -22,17 +22,17 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kMostTo_Hz = 250.0;
-constexpr double kPeriods = 2.0;            ///< of a run: short runs jog fast, and friction differs from run to run
-constexpr double kRun = kPeriods + 1.4;     ///< periods of jogging before: the excitation is faded in and settles
-constexpr double kRunAndStop = kRun + 1.1;  ///< it is faded out within one
-constexpr double kShareOfBands = 0.6;       ///< of the time; the rest is for a closer look at resonances
+constexpr double kPeriods = 2.0;         ///< of a run: in short runs the jog is fast, and friction varies between runs
+constexpr double kRun = kPeriods + 1.4;  ///< periods, including fade-in and settling of the excitation
+constexpr double kRunAndStop = kRun + 1.1;  ///< periods including the fade-out
+constexpr double kShareOfBands = 0.6;       ///< of the time; the rest is for more lines around resonances
 constexpr double kMostRealisations = 12.0;
-constexpr double kRideOfBox = 0.45;      ///< the excitation adds as much, and noise adds to it
-constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the response, so that the axis never reverses
+constexpr double kRideOfBox = 0.45;      ///< speed of the jog relative to the box; excitation and noise add to it
+constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the response relative to the jog: the axis never reverses
 constexpr double kAnswerOfWatch = 0.4;   ///< peak of its position as a part of the following-error limit; the response
                                          ///< may be twice that of the rigid model
 constexpr double kWindow = 0.85;         ///< of half the travel at which the board reverses
-constexpr double kLinesPerOctave = 6.0;  ///< wanted
+constexpr double kLinesPerOctave = 6.0;  ///< desired number
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 class Planner {
@@ -70,7 +70,7 @@ class Planner {
   }
 
   double run_s() const { return run_s_; }
-  /// Of one band.
+  /// Shortest time for one band.
   double least_s() const { return run_s_ * fewest(); }
 
  private:
@@ -108,7 +108,7 @@ class Planner {
            10.0 * speed / scale_.rate_Hz;
   }
 
-  /// As fast as the box and the travel allow.
+  /// The highest jog speed that box and travel allow.
   double choose_ride(double run_s) const {
     const double room = kWindow * plan_.box.travel / 2.0;
     double ride = kRideOfBox * plan_.box.speed;
@@ -119,7 +119,7 @@ class Planner {
                                                  plan_.box.travel, run_s));
   }
 
-  /// Peak, V.
+  /// Peak amplitude, V.
   double amplitude(double from, double to, double ride) const {
     constexpr int kPoints = 24;
     double speed_power = 0.0, position_power = 0.0;
@@ -132,7 +132,7 @@ class Planner {
     const auto& watch = parameters_.monitors;
     const double allowed = static_cast<double>(watch.following_error_floor) +
                            static_cast<double>(watch.following_error_per_velocity) * speed;
-    // RMS as of one line, times its peak
+    // RMS of one line, times its peak
     return plan_.share * std::min({plan_.box.volts, kAnswerOfRide * speed / std::sqrt(speed_power),
                                    kAnswerOfWatch * allowed / std::sqrt(position_power)});
   }
@@ -165,7 +165,7 @@ class ClosedMeanwhile {
     if (!was_open_) return;
     try {
       disable_and_wait(board_, mask_);
-    } catch (const Failure&) {  // the earlier failure is more informative
+    } catch (const Failure&) {  // keeps the earlier failure, which is more informative
     }
   }
   ClosedMeanwhile(const ClosedMeanwhile&) = delete;
@@ -217,7 +217,7 @@ void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& pla
   const Planner bands(part, scale, parameters);
   if (bands.least_s() > part.box.time_s) part.box.time_s = plan.box.time_s;
   const std::vector<Excitation> runs = plan_response(part, scale, parameters);
-  const ClosedMeanwhile closed(board, axis);  // also while the first runs are looked at: opened, it would still ring
+  const ClosedMeanwhile closed(board, axis);  // also during the analysis: opening the loop makes the axis ring
   make_response_runs(board, axis, runs, values, scale, stop, records, progress);
   double left_s = plan.box.time_s - bands.run_s() * static_cast<double>(runs.size());
   const PlantFit fit = fit_plant(frequency_response(records));

@@ -11,20 +11,20 @@
 
 namespace host {
 
-/// Limits and range of the runs. The box's time is that of all runs together.
+/// Limits and frequency range of the runs. The box's time is the total of all runs.
 struct ResponsePlan {
   ExcitationLimits box;
   double from_Hz = 2.0;
   double to_Hz = 0.0;            ///< 0: a quarter of the control rate, 250 Hz at most
-  std::size_t realisations = 4;  ///< realisations of the phases in each band, at least; more if time allows
+  std::size_t realisations = 4;  ///< minimum number of realisations of the phases in each band; more if time allows
   unsigned seed = 1;
-  double share = 1.0;  ///< of the usual amplitude: less if an axis responds more than expected
+  double share = 1.0;  ///< share of the usual amplitude: below 1 if an axis responds more than expected
 };
 
 /// Plans the runs in order: bands of at most kExcitationEntries lines, the lowest first, realisations alternately
-/// forward and backward. The amplitude is below the box's volts if friction would otherwise change its sign (the
-/// response's speed stays below the jog's) or the following error would come near its limit. `parameters`: those of the
-/// board, which give the response. Throws Failure(refused) if the box has too little travel or time.
+/// forward and backward. The amplitude is reduced below the box's volts so that friction keeps its sign (the response's
+/// speed stays below the jog's) and the following error stays away from its limit. `parameters`: the board's, from
+/// which the response is predicted. Throws Failure(refused) if the box has too little travel or time.
 std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
                                       const firmware::AxisParameters<float>& parameters);
 
@@ -40,8 +40,9 @@ void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector
                         const std::function<bool()>& stop, std::vector<Record>& records,
                         const std::function<void(std::size_t done, std::size_t of)>& progress = {});
 
-/// Makes the whole measurement: the bands, then a closer look at each resonance found while the box's time lasts (half
-/// of the bands' time each). Appends each record to `records` as it is made, so that they are kept after a failure.
+/// Makes the whole measurement: the bands, then more lines around each resonance found, as far as the box's time allows
+/// (half of the bands' time each). Appends each record to `records` as it is made, so that they are kept after a
+/// failure.
 void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& plan,
                   const firmware::ParameterValues& values, const ExcitationScale& scale,
                   const std::function<bool()>& stop, std::vector<Record>& records,

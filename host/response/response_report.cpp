@@ -22,7 +22,8 @@ constexpr double kNyquistReach = 2.5;  ///< part of the open loop drawn around -
 
 double decibels(double value) { return 20.0 * std::log10(std::max(value, std::numeric_limits<double>::min())); }
 
-/// Degrees, unwrapped, with the middle between -360 and 0: lines at the ends may be noise.
+/// Unwrapped phase in degrees, shifted so that its middle lies between -360 and 0, because lines at the ends may be
+/// noise.
 std::vector<double> unwrapped(const std::vector<Complex>& values) {
   std::vector<double> phase;
   for (const Complex& value : values) {
@@ -34,7 +35,7 @@ std::vector<double> unwrapped(const std::vector<Complex>& values) {
   return phase;
 }
 
-/// Complex values over frequency with the half width of either part.
+/// Complex values over frequency with the half width of their 95 % intervals.
 struct Curve {
   std::string name;
   SeriesRole role = SeriesRole::measured;
@@ -258,7 +259,7 @@ Table resonances_table(const PlantFit& fit) {
   return table;
 }
 
-/// Whether it is another measurement, not the same one with another controller.
+/// Whether `axis` is a new measurement, not the same measurement with another controller.
 bool is_measured_again(const AxisResponse& axis, const AxisResponse& before) {
   const auto& a = axis.response.lines;
   const auto& b = before.response.lines;

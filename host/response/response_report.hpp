@@ -10,10 +10,10 @@
 namespace host {
 
 /// Verdict, margins, Bode plots with intervals, Nyquist plot with the circle of the modulus margin, resonances.
-/// `before`: another state of the axis drawn beside it; nullptr: none.
+/// `before`: an earlier state of the axis to draw for comparison; may be nullptr.
 Report response_report(const AxisResponse& axis, const std::string& subtitle, const AxisResponse* before = nullptr);
 
-/// The margins of both, in columns.
+/// Table of the margins of `axis` and, if given, `before`.
 std::string margins_text(const AxisResponse& axis, const AxisResponse* before, const Terminal& terminal);
 
 std::string response_text(const AxisResponse& axis, const Terminal& terminal);

@@ -11,13 +11,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Neighbouring lines whose disturbances are assumed equal: in the output's units they are smooth over frequency, in
-/// closed loop too.
+/// Number of neighbouring lines whose disturbances are assumed equal. In the output's units disturbances are smooth
+/// over frequency, also in closed loop.
 constexpr std::size_t kNeighbours = 1;
 
 Complex turned(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * turns); }
 
-/// Mean over periods, referred to a period of the excitation with all phases 0.
+/// Mean over periods, relative to a period of the excitation with all phases 0.
 struct Realisation {
   std::vector<Complex> u;
   std::vector<Eigen::Vector2cd> y;
@@ -37,8 +37,8 @@ Realisation mean_of(const PeriodicRun& run) {
   return mean;
 }
 
-/// Records begin anywhere within a period: the shift in whole samples that aligns the command's response with that of
-/// the first realisation. Unknown phases are taken from the command itself.
+/// Records begin anywhere within a period. Shifts by whole samples so that the command's response aligns with that of
+/// the first realisation. Takes unknown phases from the command itself.
 void align(Realisation& one, const Realisation& first, const MultisineHeader& excitation) {
   const std::size_t lines = excitation.lines.size();
   if (excitation.phases_turns.empty()) {
@@ -123,14 +123,14 @@ std::vector<ResponseLine> robust_response(const std::vector<PeriodicRun>& runs) 
     lines[i].plant = y / u;
     for (std::size_t m = 0; m < runs.size(); ++m) {
       between[i].add(means[m].y[i] - lines[i].plant * means[m].u[i]);
-      const Eigen::Vector2cd own = means[m].y[i] / means[m].u[i];  // its own plant: nonlinearity stays out
+      const Eigen::Vector2cd own = means[m].y[i] / means[m].u[i];  // of this realisation: excludes nonlinearity
       double periods = 0.0;
       Spread one;
       for (const auto& period : runs[m].period) {
         one.add(Eigen::Vector2cd(period[i].x, period[i].w) - own * period[i].u);
         ++periods;
       }
-      within[i].sum += one.sum / periods;  // of that realisation's mean
+      within[i].sum += one.sum / periods;  // variance of the mean of that realisation
       within[i].degrees += periods - 1.0;
     }
     between[i].degrees = realisations - 1.0;

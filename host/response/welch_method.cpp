@@ -13,11 +13,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kStretch_s = 1.0;  ///< equal to a multisine's period: lines 1 Hz apart
-constexpr std::size_t kFewest = 8;  ///< segments; shorter ones if a record has fewer
-constexpr double kHighest = 0.4;    ///< of the sample rate
+constexpr double kStretch_s = 1.0;  ///< length of a segment: lines 1 Hz apart
+constexpr std::size_t kFewest = 8;  ///< least number of segments; they are shortened to reach it
+constexpr double kHighest = 0.4;    ///< highest frequency relative to the sample rate
 constexpr double kChance = 0.05;
-constexpr std::size_t kLowest = 2;  ///< below it, the window's main lobe reaches 0 Hz
+constexpr std::size_t kLowest = 2;  ///< lowest line; below it the window's main lobe reaches 0 Hz
 
 /// Cross-spectra at one frequency, summed over segments.
 struct Sums {
@@ -73,7 +73,7 @@ class Averages {
 
   std::vector<ResponseLine> lines(double sample_period_s) const {
     std::vector<ResponseLine> found;
-    // For Hann windows with half overlap (Harris 1978).
+    // Equivalent number of independent segments for Hann windows with half overlap (Harris 1978).
     const double count =
         18.0 * static_cast<double>(stretches_ * stretches_) / (19.0 * static_cast<double>(stretches_) - 1.0);
     if (count < 2.0) return found;

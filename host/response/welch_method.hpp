@@ -14,7 +14,7 @@ struct WelchResponse {
 };
 
 /// Hann windows with half overlap; G = S_yr / S_ur with r the reference's speed if it moves, else the command.
-/// Intervals after Bendat & Piersol, Random Data, 4th ed., 9.2. Position enters by its increments, so that a jog does
+/// Intervals after Bendat & Piersol, Random Data, 4th ed., 9.2. Uses the increments of the position, so that a jog does
 /// not appear as a ramp.
 WelchResponse welch_response(const std::vector<Record>& records);
 

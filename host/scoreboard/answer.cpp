@@ -63,7 +63,7 @@ Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict) {
   const bool all_clear = verdict.status == Status::adequate || verdict.status == Status::parameters;
   if (truth.alien) return verdict.effects.empty() && !all_clear ? Outcome::right : Outcome::wrong;
   if (verdict.effects.empty()) return truth.effects.empty() ? Outcome::right : Outcome::missed;
-  // A group of which no member is named stands for one effect more.
+  // A group of which no effect is named counts as one more effect.
   const auto unnamed =
       static_cast<std::size_t>(std::ranges::count_if(verdict.alternatives, [&](const std::vector<std::string>& group) {
         return std::ranges::none_of(group, claims);
@@ -109,7 +109,7 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
 
 namespace {
 
-/// Diagnoses records that the gate accepts; otherwise there is no answer.
+/// Diagnoses the records if the gate accepts them; otherwise the answer is empty.
 Answer ask(const std::string& name, const std::string& group, const Truth& truth, const sim::DriveDescription& model,
            std::vector<Record> train, std::vector<Record> validate, const ShareDone& progress,
            const std::vector<std::string>& absent = {}) {
@@ -159,7 +159,7 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
     return std::ranges::find(along, answer.verdict.coordinate) != along.end();
   };
   result.right_coordinate = answer.outcome == Outcome::group || std::ranges::any_of(truth.effects, goes_with);
-  // Over the coordinate that the verdict names, as its reader would try, and over the best one in validation.
+  // Tries the coordinate that the verdict names, as a user would, and the best one in validation.
   for (const std::string& over : {std::string(), answer.verdict.coordinate}) {
     if (!over.empty() && std::ranges::find(sim::kCurveCoordinates, over) == std::end(sim::kCurveCoordinates)) continue;
     try {

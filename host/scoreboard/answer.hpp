@@ -14,7 +14,7 @@ namespace host {
 
 /// Right: exactly the truth, or no claim if nothing is hidden or the hidden effect is in no catalogue. Group: an
 /// ambiguous answer that contains the truth. Partly: some of several effects, and nothing else. Wrong: an effect that
-/// is not there. Missed: no claim although there was an effect to find.
+/// is not present. Missed: no claim although there was an effect to find.
 enum class Outcome { right, group, partly, wrong, missed };
 
 std::string_view outcome_name(Outcome outcome);
@@ -28,7 +28,7 @@ struct Answer {
   std::string name, group;
   Truth truth;
   DiagnosisVerdict verdict;
-  double before = 0.0, after = 0.0;  ///< combined, on validation data
+  double before = 0.0, after = 0.0;  ///< combined error on validation data
   double seconds = 0.0;
   Outcome outcome = Outcome::missed;
   std::vector<Forecast> forecasts;  ///< for every candidate, "nothing" and "something else"
@@ -59,16 +59,16 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress = {});
 /// Diagnoses a simulated drive in which nothing is hidden.
 Answer run_null(std::uint64_t seed, const std::string& name);
 
-/// The larger error over floor of a whole case, both sets, after a refit of the base: it shows how much there is to
-/// find.
+/// The larger ratio of error to noise floor of training and validation of a whole case, after a refit of the base. It
+/// shows how much there is to find.
 double error_of_whole_case(const std::filesystem::path& folder);
 
 /// Forecasts in ten bins of probability.
 struct Reliability {
   struct Bin {
     std::size_t count = 0;
-    double forecast = 0.0;   ///< mean
-    double came_true = 0.0;  ///< part, 0..1
+    double forecast = 0.0;   ///< mean probability
+    double came_true = 0.0;  ///< fraction that came true, 0..1
   };
   std::vector<Bin> bins;
   double expected_error = 0.0;  ///< mean of |forecast - came_true| over all forecasts (expected calibration error)

@@ -38,7 +38,8 @@ void rescale_volt(Question& question, double volts_per_volt) {
   for_each_record(question, [&](Record& record) { scale(record.u_V, volts_per_volt); });
 }
 
-/// A base parameter of a rotary drive for the linear drive whose table moves as far: effort by lead, speed times lead.
+/// Converts a base parameter of a rotary drive to the linear drive with the same motion of the table: torque divided by
+/// lead, speed times lead.
 double in_linear_units(double lead_m, std::string_view id, double value) {
   if (id.starts_with("omega")) return value * lead_m;
   return id == "J" || id == "B" ? value / (lead_m * lead_m) : value / lead_m;
@@ -46,7 +47,7 @@ double in_linear_units(double lead_m, std::string_view id, double value) {
 
 double metres_a_radian(const Question& question) { return 1e-3 * question.model.data.lead; }
 
-/// A model of a rotary base alone, and its records, as those of a linear drive.
+/// Converts a rotary model with base effects only, and its records, to a linear drive.
 void make_linear(Question& question) {
   sim::DataSheet& data = question.model.data;
   if (data.kind == sim::DriveKind::linear) return;
@@ -72,7 +73,7 @@ void make_linear(Question& question) {
   });
 }
 
-/// The parameter that stands for the other direction; the same where both share one.
+/// The corresponding parameter of the other direction; the same parameter if both directions share it.
 std::string other_direction(std::string id) {
   constexpr std::string_view kForward = "positive", kBackward = "negative";
   for (const auto& [from, to] : {std::pair{kForward, kBackward}, {kBackward, kForward}})
@@ -80,7 +81,7 @@ std::string other_direction(std::string id) {
   return id;
 }
 
-/// Exchanges the directions; values of the backward one are negative.
+/// Exchanges the directions; values of the backward direction are negative.
 void mirror(Question& question) {
   for (sim::EffectEntry& entry : question.model.effects) {
     const std::map<std::string, double> original = entry.parameters;
@@ -124,7 +125,7 @@ double mirrored(const Question& original, std::string_view id, double value) {
 
 struct Answered {
   std::string words;
-  Question question;  ///< with the base as it was re-fitted
+  Question question;  ///< with the refitted base
   double error = 0.0;
 };
 

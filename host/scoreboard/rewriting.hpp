@@ -1,4 +1,4 @@
-// Equivalent forms of the same measurements: a change that does not concern the physics must not change the diagnosis.
+// Equivalent forms of the same measurements: a change without effect on the physics must not change the diagnosis.
 #pragma once
 
 #include <functional>
@@ -31,20 +31,19 @@ struct Rewriting {
   std::function<double(const Question&, std::string_view id, double)> expected = {};
 };
 
-/// The volt a hundred times larger and smaller (data sheet along with it), metres and N for rad and Nm (for a rotary
-/// drive), the direction mirrored, time shifted, the training records in reverse order, the first of them cut in two,
-/// and given twice.
+/// Volts scaled by 100 and 0.01 (with the data sheet), a rotary drive converted to a linear one, direction mirrored,
+/// time shifted, training records in reverse order, the first of them cut in two, and given twice.
 std::span<const Rewriting> rewritings();
 
 /// Answer to a rewritten question compared with the original.
 struct Invariance {
-  bool same_verdict = false;        ///< status and effects
-  double worst_parameter = 0.0;     ///< of a fitted base parameter: 1 where both 95 % intervals just touch
-  double error_ratio = 1.0;         ///< error over floor on validation data, the larger over the smaller
+  bool same_verdict = false;        ///< same status and effects
+  double worst_parameter = 0.0;     ///< largest difference of a base parameter; 1: both 95 % intervals just touch
+  double error_ratio = 1.0;         ///< ratio of the larger to the smaller validation error
   std::string original, rewritten;  ///< both verdicts in words
 };
 
-/// Diagnoses a question and its rewritten forms; one result for each of `chosen`.
+/// Diagnoses a question and its rewritten forms; returns one result for each of `chosen`.
 std::vector<Invariance> try_rewritings(const Question& question, std::span<const Rewriting> chosen);
 
 }  // namespace host

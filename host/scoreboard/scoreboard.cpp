@@ -9,7 +9,8 @@ namespace host {
 
 namespace {
 
-/// A whole case with an error above this many noise floors has an effect to find, whatever a part of it shows.
+/// A case whose whole data have an error above this many noise floors has an effect to find, even if its pieces show
+/// less.
 constexpr double kSomethingToFind = 2.0;
 
 nlohmann::json reliability_json(const Reliability& reliability) {

@@ -1,4 +1,4 @@
-// A scoreboard: selects trials, and counts how many of each kind were answered right.
+// Selects trials for a scoreboard and counts the right answers of each kind.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace host {
 inline constexpr double kMostOfIt = 0.8;
 
 struct ScoreboardOptions {
-  std::string folder;      ///< holds cases at any depth
+  std::string folder;      ///< folder with cases at any depth
   bool cuts = false;       ///< also pieces of each case
   std::size_t sample = 0;  ///< only this many cases and cuts, drawn at random; 0: all
-  std::uint64_t seed = 1;  ///< of the sample and of the simulated drives
+  std::uint64_t seed = 1;  ///< seed of the sample and of the simulated drives
   std::size_t nulls = 0;   ///< also this many simulated drives without a hidden effect
 };
 

@@ -19,7 +19,7 @@ double between(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// Every parameter changed by up to `most`, relative.
+/// Changes every parameter at random by up to `most`, relative.
 void change(sim::DriveDescription& drive, Random& random, double most) {
   for (sim::EffectEntry& entry : drive.effects)
     for (auto& [id, value] : entry.parameters) value *= 1.0 + between(random, -most, most);

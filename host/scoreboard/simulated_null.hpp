@@ -1,5 +1,5 @@
-// Simulated measurements of drives in which nothing is hidden, each with its own motion, noise and parameters: a
-// diagnosis must not claim anything from them.
+// Simulated measurements of drives without a hidden effect, each with its own motion, noise and parameters. A diagnosis
+// must not claim any effect on them.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 namespace host {
 
 struct SimulatedNull {
-  sim::DriveDescription model;   ///< the engineer's model: up to 10 % off, as after a first identification
+  sim::DriveDescription model;   ///< the engineer's model, with errors of up to 10 %, as after a first identification
   std::vector<Record> train;     ///< one to three records of 3 to 10 s
-  std::vector<Record> validate;  ///< empty for every other one
+  std::vector<Record> validate;  ///< empty for every second measurement
 };
 
 /// Equal arguments give equal measurements.

@@ -1,5 +1,5 @@
-// Trials of the diagnosis on records with a known truth: whole cases, and pieces of them, such as a new user's first
-// records.
+// Trials of the diagnosis on records with a known truth: whole cases and pieces of them, which resemble a new user's
+// first records.
 #pragma once
 
 #include <cmath>
@@ -14,12 +14,12 @@ namespace host {
 
 /// Hidden effects of a case.
 struct Truth {
-  std::vector<std::string> effects;  ///< kinds; empty where nothing is hidden
+  std::vector<std::string> effects;  ///< kinds; empty if nothing is hidden
   bool alien = false;                ///< the hidden effect is in no catalogue
 };
 
-/// Folders at any depth that hold a case (model.toml, train-*.csv, validate.csv, truth.json), in the order of their
-/// names. Throws Failure(bad_input) where there is none.
+/// Folders at any depth that contain a case (model.toml, train-*.csv, validate.csv, truth.json), sorted by name. Throws
+/// Failure(bad_input) if there is none.
 std::vector<std::filesystem::path> find_cases(const std::string& folder);
 
 /// Throws Failure(bad_input) for a file without a list "effects".
@@ -33,9 +33,9 @@ struct Piece {
 
 struct Trial {
   std::string name;
-  std::string group;  ///< the row of the table in which it is counted: "one record", "2 s"
+  std::string group;  ///< row of the table in which it is counted: "one record", "2 s"
   std::filesystem::path folder;
-  std::vector<Piece> train, validate;  ///< without `validate`, a part of the training data is held back
+  std::vector<Piece> train, validate;  ///< if `validate` is empty, a part of the training data is held back
 };
 
 /// All training records and the validation record.
@@ -45,7 +45,7 @@ Trial whole_case(const std::filesystem::path& folder, const std::string& name);
 std::vector<Trial> pieces_of_case(const std::filesystem::path& folder, const std::string& name,
                                   const std::vector<double>& lengths_s, bool pairs);
 
-/// Throws Failure(bad_input) for a bad file, or a piece that the record does not have.
+/// Throws Failure(bad_input) for a bad file, or a piece outside the record.
 Record read_piece(const Piece& piece, const sim::DataSheet& data);
 
 }  // namespace host

@@ -21,13 +21,13 @@ namespace host {
 
 namespace {
 
-/// As boards/image/survival_record.hpp numbers them.
+/// Reset causes, as numbered in boards/image/survival_record.hpp.
 constexpr std::uint8_t kPowerOn = 1, kSoftwareReset = 3;
 
 void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
   if (file.empty() || !std::filesystem::exists(file)) return;
   const std::string bytes = read_file(file);
-  // Those of older versions had smaller sectors, and may end behind any of them: the first had no fault log.
+  // Files of older versions have smaller sectors and may end after any of them: the first version had no fault log.
   constexpr std::size_t kOldSector = 4096;
   const std::size_t sector_size = bytes.size() <= 4 * kOldSector ? kOldSector : flash.sector_size();
   if (bytes.empty() || bytes.size() % sector_size != 0 || bytes.size() > flash.sector_count() * flash.sector_size())
@@ -39,7 +39,7 @@ void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
     for (std::size_t i = 0; i < sector_size && next != bytes.end(); ++i) sector[i] = static_cast<std::byte>(*next++);
 }
 
-/// As `axistool flash` leaves a board.
+/// The state of a board after `axistool flash`.
 hal::pc::SimulatedFlash flashed_images(hal::pc::SimulatedFlash flash) {
   std::ranges::copy(simulated_image("host"), flash.contents()[0].begin());
   return flash;
@@ -96,7 +96,7 @@ class ProgramOf : public SimulatedProgram {
     return wiring;
   }
 
-  static constexpr std::uint32_t kWatchdog_us = 50'000;  ///< as the axis board's
+  static constexpr std::uint32_t kWatchdog_us = 50'000;  ///< the same as on the axis board
 
   Board board_;
   firmware::ImageHeader image_;

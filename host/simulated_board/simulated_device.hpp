@@ -1,5 +1,5 @@
-// A simulated board that runs the firmware's application. It keeps its parameters and fault log in a file, but images
-// of its program only while it exists.
+// A simulated board that runs the firmware's application. It stores its parameters and fault log in a file; images of
+// its program are lost at the end.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ struct SimulatedDrive {
 };
 
 struct SimulatedDeviceOptions {
-  std::vector<SimulatedDrive> drives;  ///< of axis x, y, …; as many as the board has axes, 1 to hal::kMostAxes
-  std::string flash_file;              ///< empty: they are not kept
-  std::uint64_t seed = 1;              ///< of the sensors' noise
-  std::vector<hal::pc::SimulatedSurface> surfaces{};  ///< that a touch probe can touch
+  std::vector<SimulatedDrive> drives;  ///< drives of axes x, y, …; 1 to hal::kMostAxes, one for each axis of the board
+  std::string flash_file;              ///< file for parameters and fault log; empty: not kept
+  std::uint64_t seed = 1;              ///< seed of the sensors' noise
+  std::vector<hal::pc::SimulatedSurface> surfaces{};  ///< surfaces for a touch probe
 };
 
 /// The board's end of any link to a host; satisfies hal::UsbHid.
@@ -38,7 +38,7 @@ class UsbEnd {
   virtual bool is_configured() = 0;
 };
 
-/// The program on a board with some number of axes, from power-up to reset.
+/// The program on a board with a certain number of axes, from power-up to reset.
 class SimulatedProgram {
  public:
   virtual ~SimulatedProgram() = default;
@@ -50,17 +50,17 @@ class SimulatedProgram {
   virtual const hal::pc::SimulatedFlash& images() = 0;
 };
 
-/// For one thread: program, control periods and environment alternate.
+/// For use in one thread: program, control periods and environment run alternately.
 class SimulatedDevice {
  public:
-  /// Powers up. Throws Failure(bad_input) for drives that the simulation cannot build, for a number of drives that is
-  /// no possible number of axes, or for a file that does not contain a flash.
+  /// Powers up. Throws Failure(bad_input) for drives that the simulation cannot build, for an impossible number of
+  /// drives, or for a file that does not contain a flash.
   explicit SimulatedDevice(SimulatedDeviceOptions options);
 
-  /// A control period of the program and the environment. Returns its duration, µs.
+  /// Runs a control period of the program and the environment. Returns its duration, µs.
   std::uint32_t run_control_period() { return program_->run_control_period(); }
 
-  /// A round of the background, with any link to a host.
+  /// Runs a round of the background, with any link to a host.
   template <hal::UsbHid Usb>
   void poll(Usb& usb) {
     struct End : UsbEnd {
@@ -76,7 +76,7 @@ class SimulatedDevice {
 
   hal::pc::SimulatedUsb& usb() { return program_->usb(); }
 
-  /// The program has requested a restart, which power_up() carries out. It also disconnects the cable.
+  /// Whether the program has requested a restart, which power_up() performs and which disconnects the cable.
   bool wants_restart() const { return program_->wants_restart(); }
   void power_up();
 

@@ -20,7 +20,7 @@ std::vector<std::byte> simulated_image(std::string_view version) {
   header.magic = firmware::kImageMagic;
   header.layout = firmware::kImageLayout;
   header.header_size = sizeof header;
-  header.chip_id = 0x413;  // as the axis board's: RM0090, 38.6.1
+  header.chip_id = 0x413;  // the same as the axis board's: RM0090, 38.6.1
   header.schema_hash = firmware::kSchemaHash;
   header.image_size = kSize;
   std::ranges::copy(std::string_view("simulated"), header.board.begin());

@@ -1,4 +1,5 @@
-// Images for the simulated board, to try updates. Its program is always this one, whatever the image contains.
+// Images for the simulated board, to try updates. The board always runs the present program, whatever the image
+// contains.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +8,10 @@
 
 namespace host {
 
-/// An image of this version does not run on the simulated board: it hangs, and the watchdog resets the board.
+/// An image of this version hangs on the simulated board, so that the watchdog resets the board.
 inline constexpr std::string_view kHangingVersion = "hangs";
 
-/// A whole image of 4 KB. Throws Failure(usage) for a version of more than 15 characters, or none.
+/// A complete image of 4 KB. Throws Failure(usage) if the version is empty or has more than 15 characters.
 std::vector<std::byte> simulated_image(std::string_view version);
 
 }  // namespace host

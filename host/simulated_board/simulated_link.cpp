@@ -29,7 +29,7 @@ void SimulatedLink::wait(std::chrono::milliseconds duration) {
   while (passed_us_ < until_us) run_control_period();
 }
 
-/// A board's background runs several rounds in a control period; each sends one report.
+/// A board's background runs several rounds in a control period; each round sends one report.
 void SimulatedLink::run_control_period() {
   passed_us_ += device_.run_control_period();
   for (int round = 0; round < 4; ++round) device_.poll(device_.usb());

@@ -1,4 +1,4 @@
-// A simulated board within this process. Its time passes only while a caller waits for it, as fast as the computer can
+// A simulated board within this process. Its clock runs only while a caller waits, as fast as the computer can
 // simulate.
 #pragma once
 
@@ -12,7 +12,7 @@ class SimulatedLink : public ReportLink {
   explicit SimulatedLink(const SimulatedDeviceOptions& options) : device_(options) { device_.usb().plug_in(); }
 
   void send(const hal::HidReport& report) override;
-  /// `limit` is the board's time: as fast as this computer simulates it.
+  /// `limit`: on the board's clock.
   std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) override;
   std::chrono::steady_clock::time_point now() const override {
     return std::chrono::steady_clock::time_point(std::chrono::microseconds(passed_us_));

@@ -18,10 +18,10 @@ using std::chrono::microseconds;
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
-/// A program at the other end. As with hidraw, everyone sees all that the board sends.
+/// A connected program. As with hidraw, every program receives all reports of the board.
 struct Host {
   OwnedDescriptor socket;
-  std::optional<hal::HidReport> waiting;  ///< for which it had no room yet
+  std::optional<hal::HidReport> waiting;  ///< a report for which the socket had no room yet
 };
 
 class SocketBoard {
@@ -29,7 +29,7 @@ class SocketBoard {
   SocketBoard(SimulatedDevice& device, const OwnedDescriptor& listener) : device_(device), listener_(listener) {}
 
   void run(const std::atomic<bool>& stop) {
-    constexpr auto kMostLag = std::chrono::milliseconds(20);  // more would look like a host that is silent
+    constexpr auto kMostLag = std::chrono::milliseconds(20);  // a longer lag would look like a silent host
     auto next = steady_clock::now();
     while (!stop) {
       next += microseconds(device_.run_control_period());
@@ -61,14 +61,14 @@ class SocketBoard {
   void welcome() {
     OwnedDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!socket) return;
-    constexpr int kRoom = 1 << 20;  // for a host that the computer keeps waiting
+    constexpr int kRoom = 1 << 20;  // for a host that does not get processor time
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kRoom, sizeof kRoom);
     hosts_.push_back({std::move(socket), {}});
     usb().plug_in();
   }
 
   void serve(std::size_t index) {
-    if (index >= hosts_.size()) return;  // another was lost meanwhile
+    if (index >= hosts_.size()) return;  // another host was lost meanwhile
     hal::HidReport report;
     const ssize_t got = ::recv(hosts_[index].socket.get(), report.data(), report.size(), 0);
     if (got < 0 && errno == EAGAIN) return;
@@ -81,7 +81,7 @@ class SocketBoard {
     deliver();
   }
 
-  /// Passes on the board's reports while at least one host takes them; a host that alone delays the others misses
+  /// Passes on the board's reports while at least one host accepts them. A host that alone delays the others misses
   /// reports.
   void deliver() {
     for (std::size_t i = hosts_.size(); i-- > 0;)
@@ -94,7 +94,7 @@ class SocketBoard {
     }
   }
 
-  /// False if it has to wait, or if the host is gone.
+  /// False if the report has to wait, or if the host is gone.
   bool is_sent(std::size_t index, const hal::HidReport& report) {
     Host& host = hosts_[index];
     if (::send(host.socket.get(), report.data(), report.size(), MSG_NOSIGNAL) >= 0) {
@@ -108,7 +108,7 @@ class SocketBoard {
     return false;
   }
 
-  /// The last one takes the cable with it.
+  /// Removes a host; without hosts the cable is disconnected.
   void lose(std::size_t index) {
     hosts_.erase(hosts_.begin() + static_cast<std::ptrdiff_t>(index));
     if (hosts_.empty()) usb().unplug();

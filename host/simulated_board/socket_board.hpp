@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// Serves one host after the other at `listener` (listen_at_socket) until `stop`: a cable that is connected again by
-/// each. Control periods keep real time; where the computer cannot, simulated time falls behind.
+/// Serves hosts at `listener` (listen_at_socket) until `stop`; the cable is connected while there is a host. Runs in
+/// real time; if the computer is too slow, simulated time falls behind.
 void serve_simulated_device(SimulatedDevice& device, const OwnedDescriptor& listener, const std::atomic<bool>& stop);
 
 }  // namespace host

@@ -25,7 +25,7 @@ std::unique_ptr<hal::usbip::UsbipController> plug_in(hal::tinyusb::HidPort& port
   } catch (const std::system_error& error) {
     const bool denied = error.code() == std::errc::permission_denied;
     throw Failure(denied ? ExitCode::permission : ExitCode::no_such_device,
-                  fmt::format("{}{}", error.what(), denied ? ": a USB device is plugged in by root: sudo" : ""));
+                  fmt::format("{}{}", error.what(), denied ? ": connecting a USB device needs root: use sudo" : ""));
   }
 }
 
@@ -33,7 +33,7 @@ std::unique_ptr<hal::usbip::UsbipController> plug_in(hal::tinyusb::HidPort& port
 
 void serve_simulated_device_on_usb(SimulatedDevice& device, const std::string& serial_number,
                                    const std::atomic<bool>& stop) {
-  constexpr auto kMostLag = std::chrono::milliseconds(20);  // more would look like a host that is silent
+  constexpr auto kMostLag = std::chrono::milliseconds(20);  // a longer lag would look like a silent host
   hal::tinyusb::HidPort port;
   if (!port.start(serial_number)) throw Failure(ExitCode::no_such_device, "the USB stack does not start");
   auto controller = plug_in(port);

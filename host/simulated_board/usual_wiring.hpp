@@ -6,7 +6,8 @@
 
 namespace host {
 
-/// A home switch at `home` mm (m) from the axis's position at power-up and, on a shaft, an index pulse per turn.
+/// A home switch at `home` mm (m) from the axis's position at power-up and, for a rotary drive, one index pulse per
+/// turn.
 hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home);
 
 /// The drive with a home switch 25 mm (0.025 m) from its position at power-up.

@@ -1,4 +1,4 @@
-// The page's actions, by the same functions as the commands: the same documents, digit for digit.
+// The page's actions. They use the functions of the commands, so documents are identical.
 #pragma once
 
 #include <functional>
@@ -16,24 +16,24 @@ struct ComparedModel;
 namespace host::workbench {
 
 struct Comparison {
-  nlohmann::json document;  ///< of `axistool compare --json`
-  std::string report;       ///< its page; empty if no command, torque or force was recorded
-  std::string text;         ///< instead of the page
+  nlohmann::json document;  ///< JSON of `axistool compare --json`
+  std::string report;       ///< HTML page; empty if no command, torque or force was recorded
+  std::string text;         ///< text for the page if there is no report
   std::string traces;       ///< record whose traces the page draws
 };
 
-/// The models that the request names, against its records. Throws as the command does.
+/// Compares the models of the request with its records. Throws as the command does.
 std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request);
 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
 
-/// Comparison of the model with one that has the values of a request to adjust, which is written to kTrial only. Throws
-/// as the command does.
+/// Compares the model with one that has the values of an adjust request. Writes the latter only to kTrial. Throws as
+/// the command does.
 Comparison compare_trial(const Folder& folder, const Request& request);
 inline constexpr const char* kTrial = "trial.toml";
 
-/// Result of a quick diagnosis: "document", its --json, and "report", its page. Throws as the command does.
+/// Result of a quick diagnosis: "document" (the JSON of --json) and "report" (the page). Throws as the command does.
 nlohmann::json look_first(const Folder& folder, const Request& request);
 
 /// The plot of an effect in the gallery, for report.js, and the size of its residual relative to a run without it.
@@ -49,8 +49,8 @@ nlohmann::json carry_out(const Folder& folder, const Request& request, const Out
 /// names and the commands. Parts without enough rows are not written. Throws Failure(refused) if nothing remains.
 nlohmann::json cut_out(const Folder& folder, const CutRequest& request);
 
-/// Result of `axistool open` for logs: { "document": of its --json, "command" }. If no question is open, or uncertain
-/// channels are accepted, the records are in their own folder.
+/// Result of `axistool open` for logs: { "document": JSON of its --json, "command" }. If no question is open, or
+/// uncertain channels are accepted, also writes the records to a separate folder.
 nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request);
 
 }  // namespace host::workbench

@@ -22,10 +22,10 @@ namespace host::workbench {
 
 namespace {
 
-constexpr double kMissing = 0.2;      ///< relative, of a parameter of inertia and friction
+constexpr double kMissing = 0.2;      ///< relative error of inertia and friction parameters
 constexpr double kScale_mm = 0.0001;  ///< resolution of the scale on the table
 
-/// Values that differ from the catalogue's examples, so that the effect acts within the run, or is clearly visible.
+/// Values that replace the catalogue's examples, so that the effect acts within the run or is clearly visible.
 struct OtherValue {
   std::string_view kind, id;
   double value;
@@ -68,7 +68,7 @@ sim::DriveDescription drive_with(const sim::EffectInfo& info) {
   return drive;
 }
 
-/// Jogs under a speed control of 6 Hz.
+/// Simulates jogs under speed control with a bandwidth of 6 Hz.
 Record standard_run(const sim::DriveDescription& drive) {
   constexpr double kBandwidth_Hz = 6.0, kJog_s = 0.45, kRest_s = 0.15, kAcceleration = 900.0;
   constexpr std::uint64_t kSeed = 1;
@@ -120,7 +120,7 @@ double rms_of_finite(const Samples& values) {
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// Table minus motor, by its scale, in micrometres.
+/// Plot of table position by its scale minus motor position, µm.
 EffectPicture picture_by_scale(const sim::EffectInfo& info, const Record& with, const Record& without) {
   const auto error_um = [](const Record& record) {
     Samples error = part_between(record.x2, record.x);
@@ -143,7 +143,7 @@ EffectPicture picture_by_scale(const sim::EffectInfo& info, const Record& with, 
   return picture;
 }
 
-/// The residual of the base model with its own part, over the first coordinate of the catalogue.
+/// Plot of the residual of the base model and the effect's contribution, over the first coordinate of the catalogue.
 ScatterPlot plain_plot(const sim::EffectInfo& info, const ResidualEffort& samples, const Samples& part) {
   ScatterPlot plot;
   plot.y = {"torque residual", "Nm"};

@@ -23,7 +23,8 @@ bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-/// The first lines say what a file is; a model's effects come after its data sheet.
+/// The beginning of a file, which determines its kind: long enough to contain a model's effects, which follow its data
+/// sheet.
 std::string head_of(const fs::path& path) {
   std::array<char, 8192> head{};
   std::ifstream file(path, std::ios::binary);
@@ -37,7 +38,7 @@ bool is_log(const std::string& extension) {
   return std::ranges::find(kRead, extension) != kRead.end();
 }
 
-/// Empty: nothing that is read here.
+/// Kind of a file; empty if it is not read here.
 std::string kind_of(const fs::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".toml") {
@@ -101,7 +102,7 @@ std::string Folder::existing(const std::string& name) const {
 
 std::string Folder::free_name(const std::string& stem, const std::string& extension) const {
   std::string name = stem + extension;
-  // A link that leads nowhere is taken too: a writer would follow it.
+  // A dangling link also counts as used, because a writer would follow it.
   for (int k = 2; fs::exists(fs::symlink_status(root_ / name)); ++k) name = fmt::format("{}-{}{}", stem, k, extension);
   return name;
 }

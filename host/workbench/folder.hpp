@@ -1,4 +1,4 @@
-// The folder that the workbench serves: the working directory, so that names are those that commands take there.
+// The folder that the workbench serves. It is the working directory, so that commands use the same names.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace host::workbench {
 
-/// Results of the jobs, and the page's selection.
+/// Subfolder for the results of the jobs and the page's selection.
 inline constexpr const char* kOwnFolder = "workbench";
 
 /// A name below the folder: no "..", no leading "/" or "-", nothing hidden, no control characters.
@@ -30,7 +30,7 @@ class Folder {
 
   const std::filesystem::path& root() const { return root_; }
 
-  /// Models, records and logs, sorted; at most some thousand. Files outside are left out, and so are links to them.
+  /// Models, records and logs, sorted; at most some thousand. Excludes files outside the folder and links to them.
   std::vector<FolderFile> files() const;
 
   /// Returns `name` if it is a file of the folder. Throws Failure: usage for an invalid name, permission if links lead
@@ -40,18 +40,17 @@ class Folder {
   /// An unused name: "x+cogging.toml", "x+cogging-2.toml", ...
   std::string free_name(const std::string& stem, const std::string& extension) const;
 
-  /// Makes kOwnFolder and returns the name of a file in it. Throws Failure(permission) where links lead out of the
-  /// folder.
+  /// Makes kOwnFolder and returns the name of a file in it. Throws Failure(permission) if links lead out of the folder.
   std::string own_file(const std::string& name) const;
 
  private:
   std::filesystem::path root_;
 };
 
-/// A file that is being uploaded to the folder: it gets its name, or a similar free one, once it is complete.
+/// A file that is being uploaded to the folder. When complete, it gets its name, or a similar unused one.
 class Upload {
  public:
-  /// Throws Failure(usage) for a name with a folder or of a kind that is not read here.
+  /// Throws Failure(usage) if the name contains a folder or its kind is not read here.
   Upload(const Folder& folder, const std::string& name);
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;

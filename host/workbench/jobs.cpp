@@ -23,7 +23,7 @@ constexpr int kMostJobs = 100'000;
 
 std::string state_name(int id) { return fmt::format("{:04}.job.json", id); }
 
-/// Cogging on x.toml goes to x+cogging.toml.
+/// Name of the new model: cogging added to x.toml gives x+cogging.toml.
 std::string model_stem(const Request& request) {
   const std::string stem = std::filesystem::path(request.models.front()).replace_extension().string();
   if (request.task == Task::add) return fmt::format("{}+{}", stem, request.kind);
@@ -101,7 +101,7 @@ int Jobs::submit(const Request& request) {
   job->outputs.json = folder_.own_file(stem + ".json");
   if (is_search(request)) job->outputs.report = folder_.own_file(stem + ".html");
   if (request.task != Task::diagnose) job->outputs.model = folder_.free_name(model_stem(request), ".toml");
-  for (const auto& item : jobs_)  // one that waits has no file yet
+  for (const auto& item : jobs_)  // a waiting job has no file yet
     if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)
       job->outputs.model = folder_.free_name(fmt::format("{}-{}", model_stem(request), id), ".toml");
   job->state = {{"format", "axis-job/1"},       {"id", id},
@@ -164,7 +164,7 @@ void Jobs::run(Job& job, const std::stop_token& stop) {
   if (!log.is_null()) job.state["log"] = log;
   try {
     keep(job, state, message);
-  } catch (const std::exception& failure) {  // a full disk: the page is told all the same
+  } catch (const std::exception& failure) {  // for example a full disk; the page shows the state anyway
     job.state["message"] = failure.what();
   }
 }
@@ -204,7 +204,7 @@ std::vector<nlohmann::json> Jobs::steps_to(std::string model) const {
   std::vector<int> ids;
   {
     const std::lock_guard lock(mutex_);
-    // A step's job is older than the job that continues from it.
+    // The job of a step is older than the job that continues from it.
     for (auto item = jobs_.rbegin(); item != jobs_.rend(); ++item) {
       const Job& job = *item->second;
       if (job.state["state"] != "done" || job.state["model"] != model) continue;

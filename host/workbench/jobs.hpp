@@ -1,5 +1,5 @@
-// Long tasks with progress and cancel: one search at a time and, in parallel, one fit at a time. A job's state is in
-// workbench/0007.job.json and its results are beside that file, so a reload, another page or a crash loses nothing.
+// Long tasks with progress and cancellation: one search at a time and, in parallel, one fit at a time. A job's state is
+// in workbench/0007.job.json and its results are beside that file, so that they survive a reload or a crash.
 #pragma once
 
 #include <atomic>
@@ -35,13 +35,13 @@ class Jobs {
   nlohmann::json list() const;
 
   /// "axis-job/1": { "id", "request", "command", "state": "queued"|"running"|"done"|"failed"|"cancelled"|"interrupted",
-  /// "share", "message", "model", "report", "document": the command's --json }; empty where there is no such job.
+  /// "share", "message", "model", "report", "document": the command's --json }; empty if there is no such job.
   std::optional<nlohmann::json> state(int id) const;
 
-  /// States, with documents, of the jobs that led to a model, first one first.
+  /// States, with documents, of the jobs that led to a model, in their order.
   std::vector<nlohmann::json> steps_to(std::string model) const;
 
-  /// Whether there is such a job; one that has ended stays as it is.
+  /// Cancels a job that has not ended. False if there is no such job.
   bool cancel(int id);
 
  private:
@@ -64,7 +64,7 @@ class Jobs {
   std::condition_variable_any changed_;
   std::map<int, std::unique_ptr<Job>> jobs_;
   std::deque<int> queue_;
-  std::jthread searcher_, fitter_;  ///< last: they use the others
+  std::jthread searcher_, fitter_;  ///< last members, because they use the others
 };
 
 }  // namespace host::workbench

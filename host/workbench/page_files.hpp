@@ -1,4 +1,4 @@
-// The page's own files, which are embedded in the program.
+// The files of the page, which are embedded in the program.
 #pragma once
 
 #include <string_view>
@@ -12,7 +12,7 @@ struct PageFile {
   std::string_view text;
 };
 
-/// The page itself first.
+/// All files; the first one is the page itself.
 const std::vector<PageFile>& page_files();
 
 }  // namespace host::workbench

@@ -15,21 +15,21 @@ enum class Task { compare, identify, diagnose, add, adjust, improve };
 std::string_view task_name(Task task);
 
 /// A task on files of the folder: { "do": "add", "model": "x.toml", "kind": "cogging", "train": [...], "validate":
-/// [...], "accept": [...] }; compare has "models" and "records", the model of identify is a data sheet.
+/// [...], "accept": [...] }. compare has "models" and "records" instead; the model of identify is a data sheet.
 struct Request {
   Task task = Task::compare;
-  std::vector<std::string> models;  ///< one, but for compare
+  std::vector<std::string> models;  ///< one; for compare, one or more
   std::vector<std::string> train;   ///< all records of a comparison
   std::vector<std::string> validate, accepted, absent;
-  std::string kind, over;           ///< of add
-  std::vector<std::string> values;  ///< of adjust: "NAME=VALUE"
-  bool quick = false;               ///< of diagnose
-  Focus focus;                      ///< of compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP]
+  std::string kind, over;           ///< for add
+  std::vector<std::string> values;  ///< for adjust: "NAME=VALUE"
+  bool quick = false;               ///< for diagnose
+  Focus focus;                      ///< for compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP]
 };
 
 inline constexpr std::size_t kLongestRequest = 65'536;
 
-/// Throws Failure(usage) naming the field and what belongs there; names are plain (is_plain_name), the files may be
+/// Throws Failure(usage) naming the field and its expected value. Names are plain (is_plain_name); the files may be
 /// missing.
 Request parse_request(std::string_view text);
 
@@ -40,7 +40,8 @@ struct CutRequest {
 };
 CutRequest parse_cut(std::string_view text);
 
-/// { "logs": [NAME...], "yes": whether to accept what is not sure }; logs of one controller help each other.
+/// { "logs": [NAME...], "yes": whether to accept uncertain channels }. Logs of one controller are opened together,
+/// because one helps to recognise the channels of another.
 struct OpenRequest {
   std::vector<std::string> logs;
   bool yes = false;
@@ -48,17 +49,17 @@ struct OpenRequest {
 OpenRequest parse_open(std::string_view text);
 
 /// The selection on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. Returns
-/// the same, checked.
+/// the checked selection.
 nlohmann::json parse_choice(std::string_view text);
 
 nlohmann::json to_json(const Request& request);
 
-/// Files for the results. Empty names are left out.
+/// Files for the results; an empty name: no file.
 struct Outputs {
   std::string model, json, report;
 };
 
-/// To paste into a shell in the folder.
+/// The equivalent command, to paste into a shell in the folder.
 std::string command_line(const Request& request, const Outputs& outputs);
 
 }  // namespace host::workbench

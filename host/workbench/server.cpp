@@ -38,17 +38,17 @@ using Clock = std::chrono::steady_clock;
 
 enum Status { ok = 200, bad_request = 400, forbidden = 403, not_found = 404, too_large = 413, refused = 422 };
 
-/// Slow clients hold a thread each; a new connection shall still find one.
+/// Enough threads for new connections, because each slow client occupies one.
 constexpr std::size_t kThreads = 64;
 constexpr time_t kPatience_s = 5;
 constexpr std::chrono::seconds kLongestBody(10), kLongestUpload(600);
 
-/// Only the page's own files are loaded, and displayed content cannot contain scripts.
+/// Loads only the page's own files; displayed content cannot contain scripts.
 constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src "
     "'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// A report carries its scripts within itself. It is given an origin of its own, from which nothing here can be asked.
+/// A report contains its scripts. It gets a separate origin, from which it cannot send requests to this server.
 constexpr const char* kReportPolicy =
     "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
@@ -66,7 +66,7 @@ int status_of(ExitCode code) {
   return code == ExitCode::permission ? forbidden : refused;
 }
 
-/// Whatever `work` throws becomes an answer.
+/// Converts exceptions of `work` to answers.
 template <typename Work>
 void answer(Response& response, Work work) {
   try {
@@ -80,7 +80,7 @@ void answer(Response& response, Work work) {
   }
 }
 
-/// Read here and not by the library: it ends at the limit, and a client that sends a byte now and then has its time.
+/// Reads the body here, not in the library, to end at the size limit and to limit the time of slow clients.
 std::optional<std::string> body_of(const ContentReader& content, Response& response) {
   std::string body;
   const Clock::time_point until = Clock::now() + kLongestBody;
@@ -110,7 +110,7 @@ struct Server::Parts {
   int port = 0;
   std::optional<Access> access;
   std::mutex comparing, looking, drawing;
-  std::map<std::string, nlohmann::json> pictures;  ///< of the gallery, by kind
+  std::map<std::string, nlohmann::json> pictures;  ///< pictures of the gallery, by kind
   std::atomic<bool> is_ending = false, has_ended = false;
 
   using Handled = httplib::Server::HandlerResponse;
@@ -200,7 +200,7 @@ struct Server::Parts {
                     {"text", std::move(comparison.text)}});
   }
 
-  /// From the model that the steps began with to the one that is asked for.
+  /// Sends the page with all steps from the first model to the requested one.
   void send_story(Request request, Response& response) {
     if (request.task != Task::compare || request.models.size() != 1)
       throw Failure(ExitCode::usage, "request, \"do\": expected compare with one model");
@@ -216,7 +216,7 @@ struct Server::Parts {
     send(response, {{"id", jobs.submit(request)}});
   }
 
-  /// A POST with a JSON body.
+  /// Handles a POST with a JSON body.
   template <typename Work>
   void post(const std::string& path, Work work) {
     http.Post(path, [work](const Query& request, Response& response, const ContentReader& content) {
@@ -284,14 +284,14 @@ struct Server::Parts {
 
   explicit Parts(int wanted_port) {
     http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-    // One request a connection: what is left unread of a refused one is never taken for another.
+    // One request for each connection, so that the unread rest of a refused request is not parsed as another.
     http.set_keep_alive_max_count(1);
     http.set_keep_alive_timeout(1);
     http.set_read_timeout(kPatience_s);
     http.set_write_timeout(kPatience_s);
     http.set_payload_max_length(kLogSize.bytes);
     http.set_tcp_nodelay(true);
-    // Without SO_REUSEPORT, which the library sets by itself: another program could listen on the same port.
+    // Without SO_REUSEPORT, the library's default, so that no other program can listen on the same port.
     http.set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -322,7 +322,7 @@ void Server::run() {
 
 void Server::stop() {
   parts_->is_ending = true;
-  // The library stops what runs already, and only once.
+  // The library's stop() has no effect before the server runs, so it is repeated.
   for (bool is_told = false; !parts_->has_ended; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
     if (is_told || !parts_->http.is_running()) continue;
     parts_->http.stop();

@@ -8,7 +8,7 @@ namespace host::workbench {
 
 class Server {
  public:
-  /// Serves the working directory on 127.0.0.1; port 0 takes a free one. Accepts connections from now on. Throws
+  /// Serves the working directory on 127.0.0.1; port 0 selects a free port. Accepts connections from now on. Throws
   /// Failure(permission) if the port is not available.
   explicit Server(int port);
   Server(const Server&) = delete;
@@ -19,7 +19,7 @@ class Server {
   int port() const;
 
   void run();   ///< answers until stop()
-  void stop();  ///< of a run() that another thread began; waits for its end
+  void stop();  ///< stops run() in another thread and waits for its end
 
  private:
   struct Parts;

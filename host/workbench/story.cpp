@@ -20,7 +20,7 @@ BarRow row_of(const std::string& label, const json& error) {
       label, {error.at("train").at("combined").get<double>(), error.at("validate").at("combined").get<double>()}, ""};
 }
 
-/// From the model as it was given; of an improvement every step of its own.
+/// Bars of the error from the given model on; each step of an improvement has its own bar.
 BarChart ladder_of(const std::vector<json>& steps) {
   BarChart chart;
   chart.title = "Error in multiples of the noise floor";

@@ -1,4 +1,4 @@
-// All steps on one page, from the given model to the present one.
+// A page with all steps from the given model to the present one.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,9 +10,9 @@
 
 namespace host::workbench {
 
-/// The models of `request` (the given one first) against its records, the errors step by step, what was fitted, and the
-/// commands that repeat it. `steps`: states of the jobs that led to the model (Jobs::steps_to()). Throws as compare()
-/// does, and Failure(bad_input) where a job's document is damaged.
+/// Contains the comparison of the models of `request` (the given one first) with its records, the errors of each step,
+/// the fitted parameters, and the commands that repeat the steps. `steps`: states of the jobs that led to the model
+/// (Jobs::steps_to()). Throws as compare() does, and Failure(bad_input) if a job's document is damaged.
 std::string story_page(const Folder& folder, const Request& request, const std::vector<nlohmann::json>& steps);
 
 }  // namespace host::workbench

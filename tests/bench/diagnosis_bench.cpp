@@ -1,6 +1,6 @@
-// How long a diagnosis takes, all candidates and pairs, and how much memory the program has needed so far: shipped
-// cases with one effect, with two and with none; all public cases where their folder is there; and a long
-// record of a slow sampler, diagnosed and improved.
+// Duration of a diagnosis with all candidates and pairs, and the peak memory of the program: shipped cases with one,
+// two and no effects; all public cases if their folder exists; and diagnosis and improvement on a long record with a
+// low sampling rate.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -96,7 +96,7 @@ const bool kRegistered = [] {
   once("diagnosis_of_a_case/nothing_hidden", diagnosis_of_a_case, "none/case-00");
   once("diagnosis_of_a_slow_sampler", diagnosis_of_a_slow_sampler);
   once("improvement_of_a_slow_sampler", improvement_of_a_slow_sampler);
-  // A folder beside the project; cases are then named by their whole path.
+  // A folder beside the project; its cases are named by their full path.
   const std::filesystem::path cases = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases";
   if (!std::filesystem::exists(cases)) return false;
   for (const auto& each : std::filesystem::recursive_directory_iterator(cases))

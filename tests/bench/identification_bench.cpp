@@ -1,4 +1,4 @@
-// Identification of a million samples, beside what reading the arrays once and forming Phi'Phi takes.
+// Identification of a million samples, relative to reading the arrays once and forming Phi'Phi.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kSamples = 1'000'000;
 constexpr double kDeadBand_rad_s = 0.5;  // the program's default
 
-/// One record of the paper's x drive under doublets of 10 V and less, with the motion known exactly.
+/// A record of the paper's x drive with doublets of up to 10 V and exact motion.
 const host::Record& long_record() {
   static const host::Record record = [] {
     const sim::DriveDescription description = host::paper_drive("x").value();
@@ -44,7 +44,7 @@ const host::Record& long_record() {
   return record;
 }
 
-/// The yardstick: four regressors, one pass over the arrays, nothing else.
+/// The reference: one pass over the arrays with four regressors.
 void form_normal_equations(const host::Record& record) {
   Eigen::Matrix4d moment = Eigen::Matrix4d::Zero();
   Eigen::Vector4d projection = Eigen::Vector4d::Zero();
@@ -73,7 +73,7 @@ double one_pass_s() {
   return shortest_s;
 }
 
-/// Runs `work` as often as the benchmark asks, and tells its processor time beside that of one pass.
+/// Runs `work` in the benchmark's loop and reports its processor time relative to that of one pass.
 template <typename Work>
 void measure(benchmark::State& state, const Work& work) {
   const double yardstick_s = one_pass_s();
@@ -101,7 +101,7 @@ void unbiased_least_squares(benchmark::State& state) {
 }
 BENCHMARK(unbiased_least_squares)->Unit(benchmark::kMillisecond);
 
-/// All that the command does after reading the file: faults of the log, excitation check, calibration, filters,
+/// The whole command after reading the file: faults of the log, excitation check, calibration, filters,
 /// estimate, relative error.
 void whole_identification(benchmark::State& state, host::IdentificationMethod method) {
   const std::vector<host::Record> records = {long_record()};

@@ -1,4 +1,4 @@
-// How long a report takes to be written.
+// Duration of writing a report.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -51,7 +51,7 @@ std::vector<double> command_with_reversals() {
   return u_V;
 }
 
-/// The windows of a record, each restarted, as `predict` simulates them: some side by side, or one after the other.
+/// The windows of a record, each restarted, as `predict` simulates them: several in parallel, or one after the other.
 template <std::size_t kTogether = host::kSideBySide>
 void predict(benchmark::State& state, const sim::DriveDescription& description) {
   const sim::Drive drive(description);
@@ -92,7 +92,7 @@ void one_run_alone_with_stribeck_friction(benchmark::State& state) {
 }
 BENCHMARK(one_run_alone_with_stribeck_friction)->Unit(benchmark::kMicrosecond);
 
-/// What a diagnosis simulates again and again: one more effect on the drive.
+/// The typical simulation of a diagnosis: the drive with one more effect.
 void predictor_with_one_effect(benchmark::State& state, const char* kind, std::map<std::string, double> parameters) {
   sim::DriveDescription drive = firmware_test::friction_drive(kPaperX);
   drive.effects.push_back({kind, std::move(parameters), {}, {}});

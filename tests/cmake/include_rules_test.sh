@@ -1,5 +1,5 @@
 #!/bin/sh
-# The include check must accept what the rules allow and name every include that breaks one.
+# The include check must accept allowed includes and report every include that breaks a rule.
 set -eu
 check=$(cd "$(dirname "$0")/../.." && pwd)/cmake/checks/include_rules.sh
 tree=$(mktemp -d)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Package installation: silent when all is there; without root and sudo it prints the exact command and fails.
+# Package installation: silent if all packages are installed; without root and sudo it prints the exact command and
+# fails.
 set -eu
 folder=$(cd "$(dirname "$0")/../.." && pwd)/cmake/packages
 command -v dpkg-query >/dev/null || { echo "SKIPPED: no Debian system"; exit 77; }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# local_names_test.sh: the check names what two sources of a folder define in anonymous namespaces, and nothing else.
+# local_names_test.sh: the check reports only names that two sources of a folder define in anonymous namespaces.
 set -euo pipefail
 check=$(cd "$(dirname "$0")/../.." && pwd)/cmake/checks/local_names.py
 tree=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Every command that README, CONTRIBUTING, the examples and `axistool help` show runs to its end as it is shown: in a
-folder of shipped records, against a simulated board. What needs more than that is listed with its reason, and
-shown_commands_test.sh then checks that it exists with the options shown."""
+"""Every command shown in README, CONTRIBUTING, the examples and `axistool help` runs to its end: in a folder of shipped
+records, with a simulated board. Commands that need more are listed with the reason; shown_commands_test.sh checks that
+they exist with their options."""
 
 import os
 import re
@@ -47,11 +47,12 @@ NOT_RUN = [
     (r"--before-after", "needs what improve writes; host/hil's tests run it"),
     (r"^axistool demo$", "ten seconds; host/demo's tests run it"),
 ]
-# What ends with another code than 0 here.
+# Commands that end with another code than 0.
 ENDS = [
     (r"--fail-above", {0, 1}),  # the answer, yes or no
 ]
-# What asks on a terminal is answered yes; what `axistool enable` or an operator does before stands here too.
+# Commands that ask on a terminal get the answer yes. Preceding commands of the operator, such as `axistool enable`, are
+# also listed.
 ASKS = r"axistool (excite|enable|home|run part.ngc --(?:capture|feed))\b"
 BEFORE = [
     (r"axistool (move|run) ", "axistool home x --here --yes && axistool home y --here --yes"),
@@ -62,7 +63,7 @@ BOARD = r"axistool (jog|move|home|capture|run|excite|set-params|reset-params|res
 
 
 def shown() -> list[tuple[str, str]]:
-    """(where, command), each once."""
+    """Pairs (where, command), without repetition."""
     found: dict[str, str] = {}
     for page in PAGES:
         text = (PROJECT / page).read_text(encoding="utf-8")
@@ -78,7 +79,7 @@ def shown() -> list[tuple[str, str]]:
 
 
 def is_complete(command: str) -> bool:
-    """`axistool jog` in running text names a command, it does not show one."""
+    """Whether this only names a command in running text, such as `axistool jog`."""
     words = command.split()
     return len(words) > 2 or words[1] in ("effects", "parameters", "list", "doctor", "faults", "disable", "save", "udev-rule")
 
@@ -110,11 +111,11 @@ class Bench:
         for axis in "xy":
             self.must(f"axistool set-params stage-params.toml --axis {axis}")
             self.must(f"axistool home {axis} --here --yes")
-        self.must("axistool set-params host.timeout=10")  # a busy computer's patience
+        self.must("axistool set-params host.timeout=10")  # for a busy computer
         self.must("axistool backup machine.toml")
 
     def lay_out(self, page: str) -> None:
-        """The files that examples name, as they were before any example wrote over them: a machine that cogs."""
+        """Restores the files that examples name, of a cogging machine, because examples overwrite them."""
         for name in ("x.toml", "x2.toml", "better.toml", "x-drive.toml", "data-sheet.toml"):
             shutil.copy(COGGING / "model.toml", self.folder / name)
         y = re.sub(r'^name = .*', 'name = "y"', (COGGING / "model.toml").read_text(encoding="utf-8"), flags=re.M)
@@ -125,7 +126,7 @@ class Bench:
             shutil.copy(COGGING / "validate.csv", self.folder / f"{name}.csv")
         steps = CASE / "train-steps.csv" if page == "axistool help identify" else COGGING / "train-sweep.csv"
         shutil.copy(steps, self.folder / "steps.csv")
-        if page == "axistool help open":  # a motor constant tells a log of the current
+        if page == "axistool help open":  # a motor constant requires a log with current
             for log, name in (("sweep", "steps"), ("jog", "jog")):
                 shutil.copy(PROJECT / f"host/examples/log/{log}.csv", self.folder / f"{name}.csv")
         for name in ("x-params.toml", "machine-7.toml"):

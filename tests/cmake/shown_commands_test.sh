@@ -1,6 +1,6 @@
 #!/bin/bash
-# shown_commands_test.sh: every command that the documentation shows exists, with the options that it is shown with; every
-# make target too; every file that it names is there.
+# shown_commands_test.sh: every command in the documentation exists with its options, and every make target and file
+# that it names exists.
 set -euo pipefail
 project=$(cd "$(dirname "$0")/../.." && pwd)
 axistool=${AXIS_BUILD:?names the build tree}/bin/axistool

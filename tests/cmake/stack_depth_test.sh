@@ -1,5 +1,5 @@
 #!/bin/sh
-# The stack check sums frames along calls, also calls through pointers, and reports what it cannot sum.
+# The stack check sums frames along calls, including calls through pointers, and reports calls that it cannot sum.
 set -eu
 check=$(dirname "$0")/../../cmake/checks/stack_depth.sh
 command -v arm-none-eabi-gcc >/dev/null || { echo "skipped: arm-none-eabi-gcc is not installed"; exit 77; }

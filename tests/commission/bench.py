@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""commission-bench: `axistool commission` on made machines whose hidden effects it is not told.
+"""commission-bench: `axistool commission` on simulated machines with unknown hidden effects.
 
 bench.py AXISTOOL MACHINES.json [--only NAME …] [--jobs N] [--keep FOLDER] [--check]
 
-A line a machine: what it hides and what was found; the following error before and after, and what a controller that
-is told the truth reaches with the same motion on the same machine; minutes of motion and seconds of computing.
+Prints one line for each machine: the result; the following error before, after, and with a controller designed from the
+true parameters, for the same motion on the same machine; minutes of motion and seconds of computing.
 """
 import argparse
 import concurrent.futures
@@ -39,7 +39,8 @@ def data_sheet(base, torque):
 
 
 def one_level(base):
-    """The data sheet's claim that both directions have the same friction; without it a weight is part of Coulomb's."""
+    """The data sheet states that friction is equal in both directions; otherwise a weight would count as Coulomb
+    friction."""
     return effect({"kind": "coulomb", "level_N" if base["drive"]["kind"] == "linear" else "level_Nm": base["coulomb"][0]})
 
 
@@ -60,7 +61,7 @@ def machine(base, hidden):
 
 
 def run(axistool, folder, arguments):
-    """What it did, and its own computing: seconds of a processor, whatever else the computer does meanwhile."""
+    """The completed run and its processor time in seconds, independent of other load on the computer."""
     with tempfile.TemporaryFile("w+") as told:
         process = subprocess.Popen([axistool, "commission", "x", "-o", folder, "--yes", *arguments], stdout=subprocess.DEVNULL,
                                    stderr=told)
@@ -71,7 +72,7 @@ def run(axistool, folder, arguments):
 
 
 def commission_plant(axistool, base, entry, folder):
-    """A machine that is another program: nothing here knows its true parameters."""
+    """A machine simulated by another program; its true parameters are unknown here."""
     sheet, out = folder / "sheet.toml", folder / "found"
     alike = entry["sheet"].get("one_level")
     sheet.write_text(data_sheet(base, entry["sheet"]["torque"]) + (one_level(base) if alike else ""))
@@ -101,11 +102,11 @@ def commission(axistool, base, entry, folder):
         return {**result, "failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
     state = json.loads((out / "commission.json").read_text())
     ladder = json.loads((out / "improvement.json").read_text())["ladder"]
-    # The same step with the truth in place of the model: the data sheet is then the truth's as well.
+    # The same step with the true model, whose data sheet is then also the true one.
     told = folder / "told"
     shutil.copytree(out, told)
     shutil.copy(truth, told / "improved.toml")
-    roomy = base["box"].replace("time=", "time=1")  # the commissioning itself may have used up the box's time
+    roomy = base["box"].replace("time=", "time=1")  # the commissioning may have used the box's time
     other, _ = run(axistool, str(told), [*common, "--box", roomy, "--drive", str(truth), "--from", "compensate", "--to", "compensate"])
     best = json.loads((told / "commission.json").read_text())["following_error_um"] if other.returncode == 0 else {}
     return {**result, "verdict": state["verdict"], "added": (state.get("decided") or []) + [k for rung in ladder for k in rung["added"]],
@@ -114,20 +115,20 @@ def commission(axistool, base, entry, folder):
 
 
 def answer(result):
-    """What the tool says, and whether that is right: the hidden effects named, or an honest group that holds them."""
+    """The tool's verdict, and whether it is right: the hidden effects, or an ambiguous group that contains them."""
     hidden, verdict = set(result["hides"]), result["verdict"]
     if result["added"]:
         found = set(result["added"])
-        for group in map(set, verdict["alternatives"]):  # said to look alike, and left open
+        for group in map(set, verdict["alternatives"]):  # ambiguous, reported as such
             if found & group and hidden & group:
                 found = (found - group) | (hidden & group)
-        # Every machine's friction falls with speed: to name it where the ladder did not show it is right, too.
+        # Friction of every machine falls with speed, so naming Stribeck friction is also right.
         return " + ".join(sorted(found)), found - {"stribeck"} == hidden
     groups = [set(group) for group in verdict["alternatives"]]
     if verdict["status"] == "ambiguous":
         return " or ".join(sorted(verdict["effects"])), any(hidden & group for group in groups) or bool(
             hidden & set(verdict["effects"]))
-    # Nothing, but for effects that it names and that no motion of these would have shown, is an honest answer, too.
+    # "Nothing is missing" is also right if the tool lists the hidden effects as not visible in these motions.
     is_noise = verdict["probability_nothing"] > SURE and not verdict["effects"]
     return verdict["status"], not hidden and (verdict["status"] in ("adequate", "parameters") or is_noise)
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Two axes of one board commissioned one after the other, and the contour error of the same circle before and after.
+"""Commissions two axes of one board one after the other; compares the contour error of a circle before and after.
 
 contour.py AXISTOOL MACHINES.json [--keep FOLDER]
 
-Before: each axis with the first controller that commissioning gives it, and homed. The board is simulated behind its
-protocol, in real time: a quarter of an hour. Fails unless the contour error falls by more than a tenth.
+Before: each axis is homed and has the first controller of its commissioning. The board is simulated in real time and
+used over its protocol; this takes a quarter of an hour. Fails unless the contour error falls by more than 10 %.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ import time
 import bench
 
 CIRCLE = "G21 G90\nG0 X0 Y0\nG1 X10 Y0 F600\nG2 X10 Y0 I-10 J0 F1200\nG2 X10 Y0 I-10 J0\nG1 X0 Y0\nM2\n"
-AXES = {"x": "01-cogging", "y": "18-cogging-and-weight"}  # of the second the cogging alone: a level axis
+AXES = {"x": "01-cogging", "y": "18-cogging-and-weight"}  # of the second machine only the cogging: a level axis
 
 
 def write_machines(book, folder):

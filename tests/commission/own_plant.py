@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Machines that share no code with the simulator, behind the simulated board (axis-plant/1): own_plant.py KIND [SEED]
+"""Machines independent of the simulator, for the simulated board (axis-plant/1): own_plant.py KIND [SEED]
 
 A screw with friction, in Nm, kg m^2, rad/s and mm; KIND is what it hides: nothing, cogging, weight, delay.
 """
@@ -10,7 +10,7 @@ import sys
 
 KA_KT, J, B, LEAD = 3.0, 0.008, 0.03, 1.6
 COULOMB, STATIC, FADE = 2.0, 2.3, 1.5
-STEPS = 10  # of the integrator in a period
+STEPS = 10  # integration steps per period
 kind = sys.argv[1]
 noise = random.Random(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
 COGGING = 0.45 if kind == "cogging" else 0.0

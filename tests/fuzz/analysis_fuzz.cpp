@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Effects that reach back before a window, or change what a reading means.
+/// Effects with memory before a window, or that change the readings.
 constexpr std::string_view kModel = R"(format = "axis-model/1"
 [drive]
 kind = "rotary"

@@ -12,8 +12,8 @@
 
 namespace {
 
-/// Answers with the input, 64 bytes at a time. The first byte of each piece says how true the piece is made: a right
-/// checksum lets the fuzzer past it, right sequence number and type past the question whether it is the answer.
+/// Answers with the input, 64 bytes at a time. The first byte of each piece selects corrections, so that the fuzzer
+/// passes the checks: checksum, sequence number and type.
 class FuzzedLink : public host::ReportLink {
  public:
   FuzzedLink(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}

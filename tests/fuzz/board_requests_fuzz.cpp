@@ -31,7 +31,7 @@ void seal(hal::HidReport& report) {
 
 }  // namespace
 
-/// Each piece: a byte whose lowest bit asks for a right checksum, then a report. A control period follows each.
+/// Each piece is a byte, whose lowest bit requests a correct checksum, and a report. A control period follows.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kMostReports = 64;
   hal::pc::SimulatedBoard board({small_drive(), small_drive()}, 1);
@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis)
       if (board.axis(axis).drive_enable().is_on() && !application.is_fitted(axis)) std::abort();
   }
-  // At the next reset, and at the one after an image was tried, which nobody confirmed.
+  // At the next reset, and at the one after the trial of an unconfirmed image.
   firmware::BootChoice boot(board.image_flash());
   if (boot.prepare() == firmware::BootResult::nothing || boot.prepare() != firmware::BootResult::program) std::abort();
   if (!std::ranges::equal(board.image_flash().view(0).first(program.size()), program)) std::abort();

@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
       if (!knot.position.allFinite() || !knot.velocity.allFinite() || !knot.acceleration.allFinite()) std::abort();
       if (k > 0 && !(knot.time_s > path.knots[k - 1].time_s)) std::abort();
     }
-  } catch (const host::Failure&) {  // what is wrong was said
+  } catch (const host::Failure&) {  // refused with a message
   }
   return 0;
 }

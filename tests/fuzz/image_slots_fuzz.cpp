@@ -1,5 +1,5 @@
-// Any bytes as a board's flash of programs: the boot code ends, starts nothing but a whole image, and comes to the same
-// at the next reset; the running program tells the slots' states.
+// Any bytes as a board's program flash: the boot code ends, starts only complete images, and decides the same at the
+// next reset; the running program reports the slots' states.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSector = 1024;
 
-/// The lowest bits of `truth` make a sector's image whole, its number whole, and marks of it.
+/// The lowest bits of `truth` select repairs of a sector: a valid image, a valid number, and marks.
 void mend(std::vector<std::byte>& sector, std::uint8_t truth) {
   firmware::ImageHeader header;
   std::byte* const place = sector.data() + firmware::kImageHeaderOffset;

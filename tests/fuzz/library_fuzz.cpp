@@ -1,5 +1,5 @@
-// Files of the kinds that libraries from elsewhere read (MATLAB, HDF5, SQLite), in their process of its own: channels
-// or a refusal, and the file as it was.
+// Files that external libraries read (MATLAB, HDF5, SQLite), in a separate process: channels or a refusal; the file is
+// unchanged.
 #include <unistd.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Any bytes as a scenario: read or refused with a message, never anything else; so are its paths.
+// Any bytes as a scenario: read or refused with a message; its paths likewise.
 #include <cstdint>
 #include <string_view>
 

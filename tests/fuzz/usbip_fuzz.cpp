@@ -1,5 +1,4 @@
-// Any bytes as what a USB/IP host sends: the controller answers what it was asked and nothing else, and hangs up on
-// what is not USB/IP.
+// Any bytes from a USB/IP host: the controller answers only requests, and disconnects if the data are not USB/IP.
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -19,10 +18,10 @@ using namespace std::chrono_literals;
 using hal::usbip::Command;
 using Bytes = std::vector<std::uint8_t>;
 
-/// What the host has asked and not yet been told.
+/// Requests of the host that are not answered yet.
 class OpenRequests {
  public:
-  /// Takes the requests out of the stream, as far as they are whole.
+  /// Extracts the complete requests from the stream.
   void add(const std::uint8_t* data, std::size_t size) {
     stream_.insert(stream_.end(), data, data + size);
     while (stream_.size() >= hal::usbip::kHeaderSize) {
@@ -39,7 +38,7 @@ class OpenRequests {
     }
   }
 
-  /// Takes the replies out of what was received, which must be whole and fit a request.
+  /// Extracts the replies from the received data; each must be complete and match a request.
   void settle(Bytes received) {
     while (!received.empty() && !unclear_) {
       if (received.size() < hal::usbip::kHeaderSize) std::abort();
@@ -83,7 +82,7 @@ Bytes receive_all(int socket) {
 
 }  // namespace
 
-/// The first byte cuts the stream into pieces; the board sends every report back.
+/// The first byte sets the size of the pieces of the stream; the board returns every report.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static hal::tinyusb::HidPort port;
   static const bool started = port.start("FUZZ");

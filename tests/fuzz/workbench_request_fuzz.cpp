@@ -1,5 +1,4 @@
-// Any body of a request to the workbench: understood or refused, and what is understood names nothing outside the
-// folder.
+// Any body of a request to the workbench is accepted or refused; accepted requests name only files in the folder.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

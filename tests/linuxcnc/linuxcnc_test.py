@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""LinuxCNC, a controller that this project did not write, around machines that hide an effect.
+"""LinuxCNC, an independent controller, with machines that have a hidden effect.
 
 Its trajectory planner runs G-code, its PID closes the loop of each joint, its sampler logs. From that log axistool
 finds the effect and exports a HAL component; LinuxCNC loads it beside its PID, and its own following error must fall.
@@ -29,7 +29,7 @@ EXAMPLE = PROJECT / "host/examples/linuxcnc"
 MODULES = Path("/usr/lib/linuxcnc/modules")
 NAMESPACES = ["unshare", "--user", "--map-user=1000", "--map-group=1000", "--keep-caps", "--mount", "--ipc", "--net",
               "--pid", "--fork", "--kill-child", "--mount-proc"]
-LIMIT_S = 600  # on a busy computer; one that is free takes a tenth
+LIMIT_S = 600  # for a busy computer; an idle one takes a tenth
 PARTS = ["star", "spiral"]  # of the G-code corpus, one behind the other
 MOST_RATIO = 0.6
 
@@ -123,7 +123,7 @@ def skip(why: str) -> None:
 
 
 def enter() -> None:
-    """Begins anew in the namespaces."""
+    """Restarts this program in the namespaces."""
     for program in ("linuxcnc", "halcompile", "linuxcncrsh", "unshare"):
         if shutil.which(program) is None:
             skip(f"{program} is not installed (make test-linuxcnc installs linuxcnc-uspace and linuxcnc-uspace-dev)")
@@ -180,7 +180,7 @@ class LinuxCnc:
         self.text = self.line.makefile("r", encoding="utf-8")
         self.ask("hello EMC test 1.0")
         self.line.sendall(b"set verbose on\n")
-        time.sleep(0.3)  # it is not acknowledged yet; of two lines at once the second would be lost
+        time.sleep(0.3)  # this command is not acknowledged, and the second of two lines at once would be lost
         self.ask("set enable EMCTOO", "set estop off", "set machine on", "set mode manual", "set home 0", "set home 1")
         self.wait_for("get joint_homed", r"JOINT_HOMED YES YES")
         self.ask("set mode auto")
@@ -224,7 +224,7 @@ class LinuxCnc:
 
 
 def following_error(logs: list[str]) -> dict[str, tuple[float, float]]:
-    """Of each axis, um: root mean square and peak of LinuxCNC's own joint.N.f-error while the command moves."""
+    """RMS and peak of LinuxCNC's joint.N.f-error of each axis while the command moves, um."""
     squares, peak, rows = {"x": 0.0, "y": 0.0}, {"x": 0.0, "y": 0.0}, 0
     for log in logs:
         lines = Path(log).read_text(encoding="utf-8").splitlines()
@@ -243,7 +243,7 @@ def following_error(logs: list[str]) -> dict[str, tuple[float, float]]:
 
 
 def settings(sources: bool) -> None:
-    """The machine as shipped, or with the exported components and what their .hal file says of FF1 and FF2."""
+    """The machine as shipped, or with the exported components and the FF1 and FF2 given in their .hal files."""
     hal, ini = EXAMPLE_TEXTS["machine.hal"], EXAMPLE_TEXTS["machine.ini"]
     if sources:
         hal = hal.replace("#source", "source")
@@ -272,7 +272,7 @@ def load(axis: str, model: str) -> None:
 
 
 def find_effects() -> None:
-    """Models of both axes from LinuxCNC's logs: the base alone, then what it lacks."""
+    """Models of both axes from LinuxCNC's logs: base model, then with the missing effects."""
     logs = ["pid-excite.txt", *(f"pid-{program}.txt" for program in PARTS)]
     call("axistool", "open", *logs, "--hal", "machine.hal", "--period", "0.001", "--yes", "-o", "records")
     for axis, sheet in (("x", X_SHEET), ("y", Y_SHEET)):

@@ -1,6 +1,5 @@
 // Drives that hide some effects of the catalogue, for `axistool scoreboard`: made_machines SEED COUNT EFFECTS DIRECTORY
-// The plant is its own and shares nothing with the simulator: steps of 20 us, friction as an impulse that stops at
-// most.
+// The plant is independent of the simulator: steps of 20 us, friction as an impulse that at most stops the motion.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -50,7 +50,7 @@ def sign(w: float) -> float:
     return math.copysign(1.0, w)
 
 
-# What each effect adds to the effort, of speed rad/s and travel mm; how a model says it; the effects that MJCF lacks.
+# Torque of each effect by speed (rad/s) and travel (mm); its entry in a model; the effects that MJCF cannot express.
 EFFECTS = {
     "nothing": (lambda w, x: 0.0, "", ()),
     "spring_torque": (lambda w, x: 0.03 * (x - 4.0), "stiffness_Nm_per_mm = 0.03\ncentre_mm = 4.0\n", ()),
@@ -68,7 +68,7 @@ EFFECTS = {
 
 
 def motion() -> "list[tuple[float, float, float]]":
-    """Angle, speed and acceleration of three sines, rad."""
+    """Angle (rad), speed and acceleration of a sum of three sines."""
     rows = []
     for k in range(8000):
         t, q, w, a = TS * k, 0.0, 0.0, 0.0
@@ -82,7 +82,7 @@ def motion() -> "list[tuple[float, float, float]]":
 
 
 def packages() -> None:
-    """MuJoCo from the registry, once; skips where there is no node, no npm or no network."""
+    """Downloads MuJoCo from the registry once; skips without node, npm or network."""
     if shutil.which("node") is None or shutil.which("npm") is None:
         print("skipped: neither node nor npm is installed (make test-mujoco installs them)")
         sys.exit(SKIPPED)

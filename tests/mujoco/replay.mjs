@@ -1,5 +1,5 @@
-// What MuJoCo says a motion needs: replay.mjs MODEL.xml MOTION PACKAGES, a row of the motion being position, speed and
-// acceleration of the joint. Prints the torque of its inverse dynamics for each row.
+// Torque that a motion needs according to MuJoCo: replay.mjs MODEL.xml MOTION PACKAGES. A row of the motion contains
+// position, speed and acceleration of the joint. Prints the torque of the inverse dynamics for each row.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';

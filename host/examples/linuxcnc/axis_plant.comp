@@ -29,7 +29,7 @@ RTAPI_MP_ARRAY_STRING(program, MOST_AXES, "a program an instance");
 static pid_t children[MOST_AXES];
 static int links[MOST_AXES];
 
-/* Sends a line and waits for the whole line that answers it; false where none comes. */
+/* Sends a line and waits for the complete answer line; false if none arrives. */
 static int ask(int there, const char *line, char *answer, int size) {
   struct pollfd readable = {there, POLLIN, 0};
   int length = 0;
@@ -53,7 +53,7 @@ EXTRA_SETUP() {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return -errno;
   children[extra_arg] = fork();
   if (children[extra_arg] < 0) return -errno;
-  if (children[extra_arg] == 0) { /* rtapi_app may be root's: the program is the user's */
+  if (children[extra_arg] == 0) { /* rtapi_app may run as root; the program runs as the user */
     if (setresgid(getgid(), getgid(), getgid()) != 0 || setresuid(getuid(), getuid(), getuid()) != 0) _exit(126);
     dup2(ends[1], STDIN_FILENO);
     dup2(ends[1], STDOUT_FILENO);

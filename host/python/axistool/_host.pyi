@@ -1,4 +1,4 @@
-"""The library, as host/python/*.cpp bind it. A record is a path or columns and header, a model a path or (text,)."""
+"""The bindings of host/python/*.cpp. A record is a path, or columns and header; a model is a path or (text,)."""
 
 from collections.abc import Callable, Mapping, Sequence
 

@@ -1,6 +1,6 @@
-"""identify, compare, predict, diagnose, add, improve, design: what the commands of the same names compute.
+"""identify, compare, predict, diagnose, add, improve, design: the analyses of the commands with the same names.
 
-`report` of each names an HTML file to write: the page that the command writes with --report.
+`report`: HTML file to write, with the page of the command's --report.
 """
 
 from __future__ import annotations
@@ -57,12 +57,13 @@ def identify(
     """Inertia (or mass), viscous and Coulomb friction, with 95 % intervals.
 
     records: one or several of the same drive, with t_s (s), a command u_V (V) or current i_A (A), and a position (x_mm,
-    x_m) or speed (w_rad_s, v_m_s). drive: the data sheet; by default the paper's drive that the record names. method:
-    "sliding-ls", "unbiased-ls" or "ls"; by default the first with a tachometer, else the second. Raises Refused where
-    the axis hardly moves, BadInput for a bad file, UsageError for an unknown method. gain: torque per command by the data
-    "sheet"; by the "current", where the records have u_V and i_A; by "inertia", where `loaded` are records of the same
-    drive with added_mass (kg, on the table) or added_inertia (kg m^2, at the motor; linear drive: kg). purpose: "control"
-    (least error of the torque or force) or "prediction" (of the motion predicted over window_s; by default 0.1 s).
+    x_m) or speed (w_rad_s, v_m_s). drive: the data sheet; by default the paper's drive if the record names it. method:
+    "sliding-ls", "unbiased-ls" or "ls"; by default the first with a tachometer, else the second. Raises Refused if the
+    axis hardly moves, BadInput for a bad file, UsageError for an unknown method. gain: source of the torque per
+    command: "sheet" (data sheet), "current" (from u_V and i_A of the records), or "inertia" (from `loaded`, records of
+    the same drive with added_mass in kg on the table, or added_inertia in kg m^2 at the motor; linear drive: kg).
+    purpose: "control" (least error of the torque or force) or "prediction" (of the motion predicted over window_s; by
+    default 0.1 s).
 
     >>> found = identify("steps.csv", drive="drive.toml", report="identify.html")
     >>> low, high = found.parameters["J_kg_m2"].ci95  # kg m^2
@@ -101,10 +102,10 @@ def compare(
 
 
 def predict(model: ModelLike, record: RecordLike, window_s: float | None = None) -> Record:
-    """A record of n rows with its position and speed and the model's beside them, each of shape (n,).
+    """A record of n rows with measured and predicted position and speed, each of shape (n,).
 
     The predicted columns are x_pred_mm (mm) and w_pred_rad_s (rad/s); of a linear drive x_pred_m (m) and v_pred_m_s
-    (m/s). window_s: as compare takes it. Raises BadInput for a record that does not fit the model.
+    (m/s). window_s: as for compare. Raises BadInput for a record that does not fit the model.
 
     >>> rows = predict("x.toml", "jog.csv")
     >>> rows["x_pred_mm"].shape == rows["x_mm"].shape
@@ -134,9 +135,9 @@ def diagnose(
     """Which physical effect the model lacks.
 
     train, validate: records; without `validate`, blocks of the training data are held back. hold: parameters that keep
-    the model's value ("J_kg_m2"). prior: standard deviations of the model's values, in their units. absent: effects that
-    this machine certainly does not have. believed: JSON file that plan or diagnose wrote before a planned run that is
-    among `train`. Raises BadInput for a bad file, UsageError for an unknown parameter or effect.
+    the model's value ("J_kg_m2"). prior: standard deviations of the model's values, in their units. absent: effects
+    that this machine certainly does not have. believed: prior odds, a JSON file that plan or diagnose wrote before the
+    planned run in `train`. Raises BadInput for a bad file, UsageError for an unknown parameter or effect.
 
     >>> found = diagnose("y.toml", "y-jog.csv", "y-valid.csv", report="diagnose.html")
     >>> found.status
@@ -156,9 +157,9 @@ def add(
 ) -> Addition:
     """Adds one effect to the model and fits all parameters again.
 
-    kind: of `effects()`. over: coordinate of a free_curve; by default the one with the smallest validation error. If the
-    effect predicts validation data worse, the result holds the model as given. Raises UsageError for an effect that is
-    unknown or cannot be added, Refused if no stretch of the records shows it.
+    kind: a kind of `effects()`. over: coordinate of a free_curve; by default the one with the smallest validation
+    error. If the effect increases the validation error, the result contains the unchanged model. Raises UsageError for
+    an effect that is unknown or cannot be added, Refused if no part of the records shows it.
 
     >>> added = add("z.toml", "cogging", "z-jog.csv")
     >>> added.after < 0.5 * added.before, "cogging" in added.model.kinds
@@ -219,9 +220,10 @@ def design(
 
     fc (Hz), zeta: natural frequency and damping of the closed loop. rw, rwd, ru, rx: variances of tachometer
     ((rad/s)^2), disturbance (V^2), command (V^2) and position (mm^2). notch, low_pass: frequency in Hz, optionally
-    followed by damping and, for the notch, depth. limits: of references, "usual" or "drive" (all that the drive allows
-    with this reserve, a share of its effort); velocity: top speed of screw and guides, mm/s. Raises BadInput for an
-    implausible model or design, Refused where friction leaves nothing for acceleration, UsageError for other limits.
+    followed by damping and, for the notch, depth. limits: limits of references, "usual" or "drive" (the most that the
+    drive allows with `reserve`, a share of its torque or force); velocity: top speed of screw and guides, mm/s. Raises
+    BadInput for an implausible model or design, Refused if friction leaves nothing for acceleration, UsageError for
+    other limits.
 
     >>> design("x.toml", fc=25.0, notch=[110.0, 0.5]).Kc.shape
     (2,)
@@ -237,7 +239,7 @@ def design(
 
 
 def require_output(output: PathLike | None, report: PathLike | None) -> None:
-    """Raises UsageError for a report of a result that is written nowhere."""
+    """Raises UsageError for a report without an output file of the result."""
     if report is not None and output is None:
         raise UsageError("the report names the file of the result: give output=, too")
 

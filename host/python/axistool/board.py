@@ -14,15 +14,15 @@ from .sources import ModelLike, Progress, model_source
 
 
 def _device(device: str | None) -> _host.Device:
-    """As the command line finds it: AXIS_DEVICE, else the only board on USB; AXIS_PATIENCE, else a second."""
+    """The device as for the command line: AXIS_DEVICE, else the only board on USB; time-out AXIS_PATIENCE, else 1 s."""
     words = os.environ.get("AXIS_DEVICE", "") if device is None else device
     return _host.Device(words, float(os.environ.get("AXIS_PATIENCE", "1")))
 
 
 @contextmanager
 def simulated_board(x: ModelLike | None = None) -> Iterator[str]:
-    """A simulated board with one axis, for the time of the block: yields what the other functions and the command line
-    take as `device`. It runs in real time in a thread of its own.
+    """A simulated board with one axis, for the duration of the block. Yields its name, for `device` of the other
+    functions and of the command line. It runs in real time in a separate thread.
 
     x: the model to simulate; by default the paper's x axis. The board starts without parameters: use set_parameters.
     Raises BadInput for a bad model.
@@ -63,7 +63,7 @@ def set_parameters(parameters: str, axis: str = "x", device: str | None = None) 
 def enable(axis: str = "x", device: str | None = None) -> None:
     """Closes the control loop of an axis, which may then move. Unlike the command line it does not ask.
 
-    Raises DeviceFault where a fault prevents it, Refused for an axis without parameters.
+    Raises DeviceFault if a fault prevents it, Refused for an axis without parameters.
 
     >>> with simulated_board("x.toml") as device:
     ...     enable("x", device)
@@ -92,9 +92,9 @@ def capture(
 ) -> Record:
     """A record of an axis at loop rate: t_s (s), u_V (V), x_mm (mm) and the others of `axistool capture`, each (n,).
 
-    seconds: 0 to 86400; 0 is as long as the jogs. jog: "20:0.6,-20:0.6" in mm/s and s, of an enabled axis, which stops
-    when the capture ends for any reason. device: as set_parameters takes it. Raises UsageError for a wrong duration,
-    Refused for a jog of an axis that is not enabled, NoSuchDevice, ProtocolError or TimeOut for the board.
+    seconds: 0 to 86400; 0: the duration of the jogs. jog: jogs of an enabled axis, "20:0.6,-20:0.6" in mm/s and s; the
+    axis stops when the capture ends for any reason. device: as for set_parameters. Raises UsageError for a wrong
+    duration, Refused for a jog of an axis that is not enabled, NoSuchDevice, ProtocolError or TimeOut for the board.
 
     >>> with simulated_board("x.toml") as device:
     ...     record = capture(0.1, device)

@@ -1,4 +1,4 @@
-"""Failures, by the exit code that the program would end with, and in its words."""
+"""Exceptions for the exit codes of the program, with its messages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class AxisError(Exception):
 
 
 class AnswerIsNo(AxisError):
-    """The answer is no: nothing is left to do.
+    """The answer is no, for example because nothing is left to do.
 
     >>> AnswerIsNo("nothing is left to separate").code
     1
@@ -28,7 +28,7 @@ class AnswerIsNo(AxisError):
 
 
 class UsageError(AxisError):
-    """An argument that the function does not know.
+    """An invalid argument.
 
     >>> from axistool import effects
     >>> try:

@@ -1,4 +1,4 @@
-"""open, sheet, cut, shift: from a controller's log and a data sheet to records."""
+"""open, sheet, cut, shift: make records from a controller's log and a data sheet."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .tables import html_table
 
 @dataclass(frozen=True)
 class Opening:
-    """Records made of logs. records: by file name; axes: the axis of each, by the same name, empty where the log holds
-    one; asks: what is not certain (correct it by `map`); missing: what the logs lack; mapping: text of a mapping file,
-    which `map` takes for the next log of that machine.
+    """Records made from logs. records: by file name; axes: axis of each record, by file name, empty if the log has only
+    one axis; asks: uncertain channels (correct them with `map`); missing: missing information; mapping: text of a
+    mapping file, for `map` with the next log of that machine.
 
     >>> opened = open_logs("scope.csv", drive="x")
     >>> [sorted(record.columns) for record in opened.records.values()]
@@ -49,12 +49,13 @@ def open_logs(
     period_s: float | None = None,
     drive: str = "",
 ) -> Opening:
-    """Records of any controller's logs, as `axistool open` makes them: names, units and physical relations of the
-    channels say what each is.
+    """Records from any controller's logs, as made by `axistool open`, which recognises channels by their names, units
+    and physical relations.
 
-    sheet: data sheet of the drive. kt: only its motor constant, Nm/A (linear: N/A). map: "x_mm=pos*0.001,…" or a mapping
-    file, instead of what is recognised. hal: the .hal file that names halsampler's columns. period_s: sampling period, s,
-    of a log that does not state it. drive: name for the records. Raises BadInput for a file that cannot be read.
+    sheet: data sheet of the drive. kt: only its motor constant, Nm/A (linear: N/A). map: "x_mm=pos*0.001,…" or a
+    mapping file, to override the recognised channels. hal: the .hal file that names halsampler's columns. period_s:
+    sampling period, s, of a log that does not state it. drive: name for the records. Raises BadInput for a file that
+    cannot be read.
 
     >>> opened = open_logs("scope.csv", drive="x")
     >>> record, = opened.records.values()
@@ -82,7 +83,7 @@ def sheet(
 ) -> str:
     """A commented data sheet to fill in (axis-model/1), with the values that are known.
 
-    kind: "rotary" or "linear". effort: what the logs hold, "current" or "voltage". kt: motor constant, Nm/A or N/A;
+    kind: "rotary" or "linear". effort: quantity in the logs, "current" or "voltage". kt: motor constant, Nm/A or N/A;
     lead_mm: travel per motor turn; step_mm: travel per encoder count; period_s: sampling period, s; all above 0. Raises
     ValueError for another kind or effort.
 
@@ -98,7 +99,7 @@ def sheet(
 def cut(record: RecordLike, from_s: float = -math.inf, to_s: float = math.inf) -> Record:
     """The rows of a record from `from_s` to `to_s` (s, both included). Time stamps stay unchanged.
 
-    Raises UsageError where no row remains, BadInput where the rest is not a valid record.
+    Raises UsageError if no row remains, BadInput if the rest is not a valid record.
 
     >>> part = cut("jog.csv", from_s=1.0, to_s=2.0)
     >>> len(part), part["x_mm"].shape, float(part["t_s"][0])
@@ -112,7 +113,7 @@ def cut(record: RecordLike, from_s: float = -math.inf, to_s: float = math.inf) -
 def shift(record: RecordLike, channel: str, by_s: float) -> Record:
     """The record with one channel later by `by_s` (s; negative: earlier). Rows at the ends without a value are cut off.
 
-    Raises UsageError for a channel that is not there.
+    Raises UsageError for an unknown channel.
 
     >>> moved = shift("jog.csv", "w_rad_s", 0.002)
     >>> len(as_record("jog.csv")) - len(moved)

@@ -26,7 +26,7 @@ class Model:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Model:
-        """The model of a file. Raises BadInput where it cannot be read as TOML."""
+        """Reads a model file. Raises BadInput if it cannot be read as TOML."""
         try:
             return cls(tomllib.loads(Path(path).read_text(encoding="utf-8")))
         except (OSError, tomllib.TOMLDecodeError) as fault:
@@ -34,7 +34,7 @@ class Model:
 
     @classmethod
     def parse(cls, text: str) -> Model:
-        """The model of a file's text. Raises tomllib.TOMLDecodeError where it is not TOML."""
+        """Parses the text of a model file. Raises tomllib.TOMLDecodeError if it is not TOML."""
         return cls(tomllib.loads(text))
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -42,21 +42,21 @@ class Model:
         Path(path).write_text(self.text(), encoding="utf-8")
 
     def text(self) -> str:
-        """The text of that file."""
+        """The text of the model file."""
         return _toml(self.document)
 
     @property
     def name(self) -> str:
-        """The drive's name; empty where the file states none."""
+        """The drive's name; empty if the file has none."""
         return str(self.document.get("name", ""))
 
     @property
     def kinds(self) -> list[str]:
-        """The kinds of its effects, in the file's order."""
+        """The kinds of the effects, in the file's order."""
         return [str(effect["kind"]) for effect in self.document.get("effect", [])]
 
     def effect(self, kind: str) -> dict[str, Any]:
-        """The first effect of this kind. Raises KeyError where there is none."""
+        """The first effect of this kind. Raises KeyError if there is none."""
         for effect in self.document.get("effect", []):
             if effect["kind"] == kind:
                 return dict(effect)

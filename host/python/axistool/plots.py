@@ -1,4 +1,4 @@
-"""Plots by matplotlib, where it is installed."""
+"""Plots by matplotlib, if it is installed."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from .errors import UsageError
 
 
 def axes_of(axes: Any = None) -> Any:
-    """`axes`, or new ones. Raises UsageError where matplotlib is missing."""
+    """`axes`, or new axes. Raises UsageError if matplotlib is missing."""
     if axes is not None:
         return axes
     return stacked_axes(1)[0]
 
 
 def stacked_axes(count: int) -> list[Any]:
-    """`count` axes, one above the other, with one horizontal axis. Raises UsageError where matplotlib is missing."""
+    """`count` axes, one above the other, with a common horizontal axis. Raises UsageError if matplotlib is missing."""
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ImportError as missing:
@@ -27,7 +27,7 @@ def stacked_axes(count: int) -> list[Any]:
 
 
 def bars(axes: Any, labels: Sequence[str], series: Mapping[str, Sequence[float]], unit: str) -> Any:
-    """Horizontal bars, a group for each label from the top, a colour for each series. Returns the axes."""
+    """Horizontal bars: a group for each label, from top to bottom, and a colour for each series. Returns the axes."""
     axes = axes_of(axes)
     height = 0.8 / max(1, len(series))
     for number, (name, values) in enumerate(series.items()):

@@ -33,7 +33,7 @@ class Record:
 
     @classmethod
     def from_arrays(cls, header: Mapping[str, str] | None = None, **columns: ArrayLike) -> Record:
-        """Of anything that NumPy takes, each of shape (n,), with the units in the names.
+        """Makes a record from columns of shape (n,), in any form that NumPy accepts, with the units in their names.
 
         >>> import numpy as np
         >>> t = np.arange(500) * 0.001  # s
@@ -45,9 +45,9 @@ class Record:
 
     @classmethod
     def of(cls, given: Any) -> Record:
-        """Of a path, a mapping of columns, a pandas DataFrame (its index is a column where it has a name), an xarray
-        Dataset (its coordinates are columns) or the dict of one, or a NumPy array with named fields. The attrs of frames
-        and datasets become the header. Raises TypeError for anything else.
+        """Makes a record from a path, a mapping of columns, a pandas DataFrame (a named index becomes a column), an
+        xarray Dataset (its coordinates become columns) or its dict, or a NumPy array with named fields. The attrs of
+        frames and datasets become the header. Raises TypeError for anything else.
 
         >>> Record.of({"t_s": [0.0, 0.001], "x_mm": [1.0, 2.0]})["x_mm"].tolist()
         [1.0, 2.0]
@@ -82,7 +82,8 @@ class Record:
         return {name: np.asarray(values, dtype=np.float64) for name, values in self.columns.items()}
 
     def to_xarray_dict(self) -> dict[str, Any]:
-        """What `xarray.Dataset.from_dict` takes: t_s as the coordinate, the other columns over it, the header as attrs.
+        """The argument for `xarray.Dataset.from_dict`: t_s as the coordinate, the other columns over it, the header as
+        attrs.
 
         >>> Record.of({"t_s": [0.0, 0.001], "x_mm": [1.0, 2.0]}).to_xarray_dict()["data_vars"]["x_mm"]["dims"]
         ('t_s',)
@@ -92,8 +93,7 @@ class Record:
         return {"coords": coords, "data_vars": columns, "dims": {"t_s": len(self)}, "attrs": dict(self.header)}
 
     def to_pandas(self) -> Any:
-        """A DataFrame with one column for each of the record's; the header is in its attrs. Raises ImportError without
-        pandas."""
+        """A DataFrame with the columns of the record; the header is in its attrs. Raises ImportError without pandas."""
         frame = import_module("pandas").DataFrame(self.to_dict())
         frame.attrs.update(self.header)
         return frame
@@ -115,7 +115,7 @@ class Record:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Record:
-        """The numbers of any table or .npy file, unchecked; the functions check a record when they take it."""
+        """The numbers of any table or .npy file, unchecked; the functions check a record when they use it."""
         columns, header = _host.read_columns(os.fspath(path))
         return cls(columns, header)
 
@@ -128,10 +128,10 @@ class Record:
         drive: str = "",
         unwrap: Mapping[str, float] | None = None,
     ) -> Record:
-        """Of a .mat, .h5 or .npy file, a ROS 2 bag or any table, as `axistool import` makes it.
+        """Makes a record from a .mat, .h5 or .npy file, a ROS 2 bag or any table, as `axistool import` does.
 
-        map: "t_s=t_ms*0.001,u_V=cmd,x_mm=#3". resample_s: period, s, to resample at. unwrap: the range at which a column
-        wraps, in its unit, {"x_mm": 6.2831853} for an angle within a turn. Raises BadInput for a bad file or mapping.
+        map: "t_s=t_ms*0.001,u_V=cmd,x_mm=#3". resample_s: period, s, to resample at. unwrap: range at which a column
+        wraps, in its unit; {"x_mm": 6.2831853} for an angle within a turn. Raises BadInput for a bad file or mapping.
 
         >>> record = Record.from_log("scope.csv", "t_s=#1*0.001,i_A=#2,x_mm=#3*0.001", drive="x")
         >>> sorted(record.columns)
@@ -142,7 +142,7 @@ class Record:
         return cls(columns, header)
 
     def checked(self) -> Record:
-        """The record as the functions take it, in the drive's own units. Raises BadInput where it is not valid."""
+        """The record in the drive's own units, as the functions use it. Raises BadInput if it is not valid."""
         columns, header = _host.checked((self.columns, self.header))
         return Record(columns, header)
 
@@ -152,7 +152,7 @@ class Record:
         Path(path).write_text(self.text(), encoding="utf-8")
 
     def text(self) -> str:
-        """The text of that file."""
+        """The text of the record file."""
         lengths = {len(values) for values in self.columns.values()}
         if len(lengths) != 1:
             raise BadInput(f"the columns of a record have one length; here are {sorted(lengths)}")

@@ -1,4 +1,4 @@
-"""Residuals of a model on a record, against any coordinate."""
+"""Residuals of a model on a record over any coordinate."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .tables import html_table
 class Residuals:
     """Measured minus predicted, one value for each of the record's n rows.
 
-    coordinate (n,): in the unit of its name; values (n,): in the unit of `channel`; forward (n,): whether the axis moves
-    in the positive direction there.
+    coordinate (n,): in the unit of its name; values (n,): in the unit of `channel`; forward (n,): whether the axis
+    moves in the positive direction.
 
     >>> left = residuals("x.toml", "jog.csv", against="speed")
     >>> left.values.shape == left.forward.shape
@@ -59,7 +59,7 @@ def residuals(
     """Residuals of a channel against a coordinate.
 
     channel: "x_mm", "w_rad_s", …; by default the position, else the speed. against: a column of the record ("t_s",
-    "x_mm", "temp_C", …), "speed", or an array of shape (n,) of your own. window_s: as compare takes it. Raises KeyError
+    "x_mm", "temp_C", …), "speed", or an array of shape (n,) of your own. window_s: as for compare. Raises KeyError
     for an unknown channel or column, ValueError for an array of another shape.
 
     >>> left = residuals("x.toml", "jog.csv", against="x_mm")

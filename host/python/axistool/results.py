@@ -1,7 +1,7 @@
-"""Results of the analysis. `json` of each is the whole answer: the document that the command prints with --json.
+"""Results of the analysis. `json` of each is the document that the command prints with --json.
 
-A "combined" error is the prediction error of all channels in multiples of the noise floor, the error that sensor noise
-alone would leave; a perfect model has about 1.
+A "combined" error is the prediction error of all channels in multiples of the noise floor (the error due to sensor
+noise alone); a perfect model has about 1.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Identification:
-    """What identify found: the model, and its parameters by name (J_kg_m2, B_Nm_s_per_rad, positive_Nm, …).
+    """Result of identify: the model, and its parameters by name (J_kg_m2, B_Nm_s_per_rad, positive_Nm, …).
 
     relative_error: norm of the residual over norm of the torque or force, 0 to 1.
 
@@ -86,7 +86,7 @@ class ChannelError:
 class Comparison:
     """How well a model predicts records. combined: error over noise floor, about 1 for a perfect model.
 
-    relative_error: of the inverse model, 0 to 1; None where the axis does not move.
+    relative_error: error of the inverse model, 0 to 1; None if the axis does not move.
 
     >>> from axistool import compare
     >>> compared = compare("x.toml", "jog.csv")
@@ -115,8 +115,8 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Candidate:
-    """Effects that were tried together. before, after: combined error on validation data; confidence: 0 to 1, that the
-    improvement is not chance; parameters: of the effects, by name.
+    """Effects that were tried together. before, after: combined error on validation data; confidence: probability that
+    the improvement is not chance, 0 to 1; parameters: those of the effects, by name.
 
     >>> tried = Candidate(["cogging"], before=9.8, after=1.05, confidence=0.99, parameters={"period_mm": 1.25})
     >>> tried.after < tried.before
@@ -133,7 +133,7 @@ class Candidate:
 @dataclass(frozen=True)
 class Diagnosis:
     """Which physical effect a model lacks. status: adequate, parameters, missing, ambiguous, unexplained or
-    insufficient_data; effects: what to add, best first.
+    insufficient_data; effects: effects to add, best first.
 
     >>> from axistool import diagnose
     >>> found = diagnose("y.toml", "y-jog.csv", "y-valid.csv")
@@ -161,7 +161,8 @@ class Diagnosis:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fitted parameter. value and deviation (standard deviation): in the parameter's unit; determined: by these data.
+    """A fitted parameter. value and deviation (standard deviation): in the parameter's unit; determined: whether these
+    data determine it.
 
     >>> fitted = Fitted(value=0.159, deviation=0.002, determined=True)  # Nm
     >>> fitted.value > 1.96 * fitted.deviation
@@ -200,7 +201,7 @@ class Addition:
 
 @dataclass(frozen=True)
 class ImprovementStep:
-    """Effects added at one step (none at first), and the combined errors on training and validation data with them.
+    """Effects added at one step (none at the first), and the resulting combined errors on training and validation data.
 
     >>> ImprovementStep(["cogging"], train=1.1, validate=1.2).validate
     1.2
@@ -213,7 +214,7 @@ class ImprovementStep:
 
 @dataclass(frozen=True)
 class Improvement:
-    """The model with all effects that are significant, and the errors step by step.
+    """The model with all significant effects, and the errors of each step.
 
     >>> from axistool import improve
     >>> better = improve("y.toml", "y-jog.csv", "y-valid.csv")

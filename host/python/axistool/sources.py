@@ -1,4 +1,4 @@
-"""What the functions take for a record, a model and a progress, and what the library takes for it."""
+"""Types that the functions accept for records, models and progress, and their conversion for the library."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from .model import Model
 from .record import Record
 
-# Record.of takes all of them; Any stands for a pandas DataFrame or an array with named fields.
+# Record.of accepts all of them; Any includes a pandas DataFrame or an array with named fields.
 RecordLike: TypeAlias = Record | str | os.PathLike[str] | Mapping[str, Any] | Any
 PathLike: TypeAlias = str | os.PathLike[str]
 ModelLike: TypeAlias = Model | PathLike
 Records: TypeAlias = RecordLike | Iterable[RecordLike]
-# Called now and then, in the caller's thread, with the share that is done (0 to 1) and what is being done; what it raises
-# ends the work.
+# Called from time to time in the caller's thread with the finished share (0 to 1) and a description of the work. An
+# exception ends the work.
 Progress: TypeAlias = Callable[[float, str], None]
 
 RecordSource: TypeAlias = str | tuple[Mapping[str, NDArray[np.float64]], Mapping[str, str]]
@@ -26,7 +26,7 @@ ModelSource: TypeAlias = str | tuple[str]
 
 
 def as_record(given: RecordLike) -> Record:
-    """Raises TypeError, with the way to make one, for what is none."""
+    """Raises TypeError, with a hint how to make a model, if the argument is not a model."""
     return Record.of(given)
 
 

@@ -1,4 +1,4 @@
-"""friction, plan, bode, circle, export, effects, scoreboard: what the commands of the same names compute."""
+"""friction, plan, bode, circle, export, effects, scoreboard: the studies of the commands with the same names."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from .tables import html_table
 
 @dataclass(frozen=True)
 class Friction:
-    """A friction curve through n constant speeds. speed (n,): rad/s or m/s; effort, half_width (n,): Nm or N, the mean
-    friction and half of its 95 % interval; curve (2, 122): speed and friction of the fit.
+    """A friction curve through n constant speeds. speed (n,): rad/s or m/s; effort, half_width (n,): mean friction and
+    half width of its 95 % interval, Nm or N; curve (2, 122): speed and friction of the fit.
 
     >>> found = friction("jog.csv", "x.toml")
     >>> found.speed.shape == found.effort.shape == found.half_width.shape, found.curve.shape
@@ -56,8 +56,9 @@ class Friction:
 
 @dataclass(frozen=True)
 class Plan:
-    """A run that separates rival explanations. rivals: their effects; probabilities: before the run, 0 to 1, sum 1;
-    expected_odds: of the true one to the next; run: text of the run's file, empty if no motion separates them.
+    """A run that separates rival explanations. rivals: effects of each explanation; probabilities: before the run, 0 to
+    1, with sum 1; expected_odds: odds of the true explanation to the next one; run: text of the run's file, empty if no
+    motion separates them.
 
     >>> planned = plan("x.toml", "steps.csv", rivals=["backlash", "compliance"],
     ...                box="travel=40,speed=150,volts=3,time=10", most_steps=1e6)
@@ -83,8 +84,8 @@ class Plan:
 @dataclass(frozen=True)
 class Response:
     """A frequency response at n lines. f_Hz (n,); plant (n,): complex, position (without one, speed) over command, in
-    the units of json; margins: of the loop, None without a controller; model: with the compliance or delay that the
-    response shows, None without a model.
+    the units of json; margins: margins of the loop, None without a controller; model: the model with the measured
+    compliance or delay, None without a model.
 
     >>> response = bode("jog.csv")
     >>> response.f_Hz.shape == response.plant.shape, response.margins is None
@@ -128,7 +129,7 @@ class CircleCause:
 
 @dataclass(frozen=True)
 class Circle:
-    """Why a circle is not round. causes: the most probable first; cannot_see: what these sensors do not show.
+    """Causes of circle errors. causes: the most probable first; cannot_see: causes that these sensors cannot show.
 
     >>> import numpy as np
     >>> t = np.arange(8000) * 1e-3  # s: four turns of 20 mm radius, the x axis 3 um late at each reversal
@@ -166,7 +167,7 @@ class Export:
     json: Mapping[str, Any]
 
     def write(self) -> None:
-        """Writes every file under its name. Raises OSError where that is impossible."""
+        """Writes every file under its name. Raises OSError if that is impossible."""
         for path, text in self.files.items():
             Path(path).write_text(text, encoding="utf-8")
 
@@ -180,9 +181,9 @@ def friction(
 ) -> Friction:
     """The friction curve from jogs at constant speeds in both directions.
 
-    method: "joint" (one fit to the mean command) or "paper" (from the Kalman disturbance). settle_s: dropped at the
-    start of each constant speed, s, at least 0; shortest_s: shortest time that a speed is held, s, above 0. Raises
-    Refused where there are too few constant speeds, UsageError for an unknown method.
+    method: "joint" (one fit to the mean command) or "paper" (from the Kalman disturbance). settle_s: time to skip at
+    the start of each constant speed, s, at least 0; shortest_s: shortest time that a speed must be held, s, above 0.
+    Raises Refused if there are too few constant speeds, UsageError for an unknown method.
 
     >>> found = friction("jog.csv", "x.toml")
     >>> bool(np.all(np.sign(found.effort) == np.sign(found.speed)))  # friction opposes the motion
@@ -214,9 +215,9 @@ def plan(
     """The run within a box that best separates rival explanations. Nothing moves.
 
     box: "travel=…,speed=…,volts=…,time=…" in mm (linear: m), mm/s, V and s. rivals: effects, "backlash+input_delay" for
-    two together; by default what diagnose leaves. most_steps: limit of simulated samples. output: file to write the run
-    to, for `axistool excite`; a report names it. Raises AnswerIsNo where diagnose leaves nothing to separate, UsageError
-    for an unknown effect or a report without an output.
+    two together; by default those that diagnose cannot separate. most_steps: limit of simulated samples. output: file
+    to write the run to, for `axistool excite`; a report names it. Raises AnswerIsNo if diagnose leaves nothing to
+    separate, UsageError for an unknown effect or a report without an output.
 
     >>> planned = plan("x.toml", "steps.csv", rivals=["backlash", "compliance"],
     ...                box="travel=40,speed=150,volts=3,time=10", most_steps=1e6)
@@ -235,10 +236,10 @@ def plan(
 def bode(
     records: Records, model: ModelLike | None = None, parameters: str = "", *, report: PathLike | None = None
 ) -> Response:
-    """The frequency response of records: of a multisine by its lines, of any other motion by Welch's method.
+    """The frequency response from records: of a multisine at its lines, of any other motion by Welch's method.
 
-    model: gives the controller that design makes of it, and so the margins. parameters: text of a parameter file, the
-    controller instead (`Design.parameters`). Raises BadInput for records without enough excitation.
+    model: for margins with the controller that design makes from it. parameters: text of a parameter file
+    (`Design.parameters`), whose controller is used instead. Raises BadInput for records without enough excitation.
 
     >>> response = bode("jog.csv")
     >>> bool(np.all(np.diff(response.f_Hz) > 0.0))
@@ -252,11 +253,11 @@ def bode(
 
 
 def circle(records: Records, models: Iterable[ModelLike] = (), *, report: PathLike | None = None) -> Circle:
-    """Why a circle is not round: each cause with its share and its probability.
+    """Causes of circle errors, each with its share and its probability.
 
-    records: with x_mm, y_mm, x_ref_mm and y_ref_mm (mm), or pairs with one axis each. Sensors at the table: x2_mm, y2_mm
-    or a ballbar's radius_mm. models: of axes x and y, whose periods are then also given in motor turns. Raises Refused
-    without a whole turn at a steady feed, UsageError for a model of another axis.
+    records: with x_mm, y_mm, x_ref_mm and y_ref_mm (mm), or pairs with one axis each. Sensors at the table: x2_mm,
+    y2_mm or a ballbar's radius_mm. models: models of axes x and y; periods are then also given in motor turns. Raises
+    Refused without a full turn at a steady feed, UsageError for a model of another axis.
 
     >>> t = np.arange(8000) * 1e-3  # s
     >>> x, y = 20.0 * np.cos(np.pi * t), 20.0 * np.sin(np.pi * t)  # mm
@@ -271,8 +272,9 @@ def circle(records: Records, models: Iterable[ModelLike] = (), *, report: PathLi
 def export(model: ModelLike, to: str, path: PathLike, record: RecordLike | None = None) -> Export:
     """The model in another program's format; `Export.write` writes the files.
 
-    to: "mjcf", "urdf", "linuxcnc", "c", "modelica" or "python". path: name of the file; LinuxCNC gets a .hal file beside
-    it. record: gives the share of what the format cannot express. Raises UsageError for another format.
+    to: "mjcf", "urdf", "linuxcnc", "c", "modelica" or "python". path: name of the file; LinuxCNC gets a .hal file
+    beside it. record: record on which to compute the share of effects that the format cannot express. Raises UsageError
+    for another format.
 
     >>> "static inline double" in export("x.toml", "c", "x.h").files["x.h"]
     True
@@ -284,7 +286,7 @@ def export(model: ModelLike, to: str, path: PathLike, record: RecordLike | None 
 
 
 def effects(kind: str = "") -> list[dict[str, Any]]:
-    """The catalogue of physical effects, or one of them: equation, parameters with units, what it is confused with.
+    """The catalogue of physical effects, or one of them: equation, parameters with units, similar effects.
 
     Raises UsageError for an unknown kind.
 
@@ -306,8 +308,8 @@ def scoreboard(
     """How often diagnose is right on cases whose truth is known: the document `axis-scoreboard/1`.
 
     folder: cases at any depth, each a folder with model.toml, train-*.csv, validate.csv and truth.json. cuts: also
-    pieces of each. sample: only so many, drawn at random with `seed`; 0: all. nulls: also so many simulated drives
-    without a hidden effect. Raises BadInput for a bad file or a folder without cases.
+    pieces of each case. sample: number of trials, drawn at random with `seed`; 0: all. nulls: number of additional
+    simulated drives without a hidden effect. Raises BadInput for a bad file or a folder without cases.
 
     >>> scored = scoreboard("cases")
     >>> scored["summary"]["none"]["cases"], scored["summary"]["none"]["wrong"]

@@ -1,4 +1,4 @@
-// Values of an effect under the user's hand: every view follows the drag; what is released can be kept or put back.
+// Sliders for the values of an effect: every view follows the drag; afterwards the values can be kept or undone.
 import { choice, chosenRecords } from "./choice.js";
 import { el, notice, short } from "./elements.js";
 import { post } from "./exchange.js";
@@ -7,8 +7,7 @@ import { begin } from "./jobs.js";
 
 const kSteps = 200;
 
-/**
- * From where to where a value is dragged: as far as it is large, but at least some of its standard deviations.
+/** Range of a slider: the value's own size to either side, but at least some of its standard deviations.
  * @param {{value: number, deviation: number, determined: boolean}} one
  * @param {{lower: number, upper: number}|undefined} bounds
  */
@@ -21,11 +20,11 @@ export function rangeOf(one, bounds) {
  * @param {any[]} parameters of axis-addition/1 that can be dragged
  * @param {any[]} catalogue
  * @param {boolean} rotary
- * @param {(told: any) => void} show draws a comparison that came
- * @param {() => void} restore draws what was there before
+ * @param {(told: any) => void} show draws a received comparison
+ * @param {() => void} restore draws the previous comparison
  */
 export function sliders(parameters, catalogue, rotary, show, restore) {
-  const values = new Map(), undone = []; // changed values, and the states before each release
+  const values = new Map(), undone = []; // changed values, and the states before each change
   let isAsking = false, isStale = false, turn = 0;
   const request = () => ({ do: "adjust", model: choice.model, ...chosenRecords(), accept: choice.accepted, values: [...values].map(([name, value]) => name + "=" + value) });
   async function ask() {

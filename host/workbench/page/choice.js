@@ -1,10 +1,9 @@
-// The present selection: one model, models to draw beside it, and the role of each record. Stored in the folder.
+// The present selection, stored in the folder: one model, models to draw beside it, and the role of each record.
 import { el, notice } from "./elements.js";
 import { get, post, upload } from "./exchange.js";
 import { begin } from "./jobs.js";
 
-/**
- * `accepted`: faults of the logs in spite of which this page goes on.
+/** `accepted`: faults of the logs that the user has accepted on this page.
  * @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>, accepted: string[]}}
  */
 export const choice = { folder: "", files: [], model: null, beside: [], roles: {}, accepted: [] };
@@ -26,12 +25,12 @@ export function recordsAs(role) {
   return namesOf("record").filter((name) => choice.roles[name] === role);
 }
 
-/** Training and held-back records, for a request. */
+/** Training and validation records, for a request. */
 export function chosenRecords() {
   return { train: recordsAs("train"), validate: recordsAs("judge") };
 }
 
-/** At first: what lies beside the model, and what is called so judges. */
+/** Initial roles: records beside the model are for training, or for validation if their name says so. */
 function usualRole(name) {
   if (choice.model && folderOf(name) !== folderOf(choice.model)) return "off";
   return isForJudging(name) ? "judge" : "train";
@@ -64,8 +63,7 @@ export async function workOn(name) {
   await changed();
 }
 
-/**
- * New records take roles.
+/** Gives roles to new records.
  * @param {Object<string, string>} roles
  */
 export async function giveRoles(roles) {
@@ -75,27 +73,26 @@ export async function giveRoles(roles) {
   await changed();
 }
 
-/** @type {{name: string, role: string, pieces: string[]}[]} records that stand cut, latest last */
+/** @type {{name: string, role: string, pieces: string[]}[]} records that are replaced by pieces, latest last */
 const cut = [];
 
 /** The latest record that was cut on this page, while its pieces are in use. */
 export const latestCut = () => cut.at(-1);
 
-/** That record as a whole again. */
+/** Restores that record in place of its pieces. */
 export function takeBack() {
   const { name, role, pieces } = /** @type {any} */ (cut.pop());
   return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, "off"])), [name]: role });
 }
 
-/** What trained judges, and the reverse. */
+/** Swaps training and validation records. */
 function swapRoles() {
   const other = { train: "judge", judge: "train", off: "off" };
   for (const name of Object.keys(choice.roles)) choice.roles[name] = other[choice.roles[name]];
   return changed();
 }
 
-/**
- * Pieces of a record take its role.
+/** Gives the role of a record to its pieces.
  * @param {string} name
  * @param {string[]} pieces
  */
@@ -104,8 +101,7 @@ export function replaceRecord(name, pieces) {
   return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, choice.roles[name]])), [name]: "off" });
 }
 
-/**
- * Whether its name says that it judges.
+/** Whether the name of a record says that it is for validation.
  * @param {string} name
  */
 export const isForJudging = (name) => /valid|judge|held|test|check/i.test(name);
@@ -160,8 +156,7 @@ function sheetRow(name) {
   return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: identify }, "Identify"));
 }
 
-/**
- * Logs of one controller are opened together: they help each other.
+/** Logs of one controller are opened together, because one log helps to recognise the channels of another.
  * @param {string[]} names
  */
 const openAddress = (names) => "#open/" + names.map(encodeURIComponent).join("/");
@@ -180,7 +175,7 @@ function render() {
   const focused = document.activeElement && place.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   const input = el("input", { type: "file", multiple: true, id: "add-files", className: "hidden", onchange: (event) => take(event.target.files) });
   const drop = el("div", { className: "drop" }, el("button", { type: "button", onclick: () => input.click() }, "Add files…"), el("span", { className: "soft" }, "or drop them anywhere"), input);
-  const swap = recordsAs("train").length && recordsAs("judge").length ? el("button", { type: "button", className: "small", id: "swap", title: "What trains judges, and what judges trains", onclick: swapRoles }, "Swap roles") : null;
+  const swap = recordsAs("train").length && recordsAs("judge").length ? el("button", { type: "button", className: "small", id: "swap", title: "Exchange training and validation records", onclick: swapRoles }, "Swap roles") : null;
   const logs = namesOf("log"), sheets = namesOf("sheet");
   place.replaceChildren(
     drop,

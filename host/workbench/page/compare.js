@@ -11,7 +11,7 @@ const kCoordinates = ["position", "speed", "acceleration", "current", "time", "t
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
 let set = "all";
 let asked = 0;
-/** What is looked at: { traces, stretch, period_mm, map }, as the command's options. */
+/** Options of the comparison, as those of the command: { traces, stretch, period_mm, map }. */
 let focus = {};
 
 function recordsOf(name) {
@@ -23,8 +23,7 @@ function setButtons(again) {
     el("button", { type: "button", "aria-pressed": String(name === set), disabled: !recordsOf(name).length, onclick: () => ((set = name), again()) }, text)));
 }
 
-/**
- * Models on records as blocks of their report.
+/** Shows the comparison of models with records as the blocks of its report.
  * @param {HTMLElement} place
  * @param {string[]} models
  * @param {string[]} records
@@ -35,8 +34,7 @@ export async function showComparison(place, models, records, options = {}) {
   return { told, show: () => drawComparison(place, told, options.onZoom) };
 }
 
-/**
- * A comparison that came. What stands there before goes only now, and the page keeps its place.
+/** Draws a received comparison. Replaces the previous content only now, so that the page keeps its scroll position.
  * @param {HTMLElement} place
  * @param {any} told
  * @param {(...words: any[]) => void} [onZoom]
@@ -57,7 +55,7 @@ export function drawComparison(place, told, onZoom) {
   place.style.minHeight = "";
 }
 
-/** Beside the comparison: the most probable answer of the force balance, as soon as it is known. */
+/** Shows beside the comparison the most probable answer of the force-balance regression, as soon as it is known. */
 async function showFirstLook(head) {
   const [look, catalogue] = await Promise.all([firstLook(), effects()]);
   if (!look || !head.isConnected) return;
@@ -66,7 +64,7 @@ async function showFirstLook(head) {
   head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + name + " " + percent(probability)));
 }
 
-/** What to draw: whose traces, which period, which stretch. */
+/** Form for the options: record of the traces, period, time range. */
 function focusTools(records, traces, again) {
   const look = (change) => ((focus = { ...focus, ...change }), again());
   const choose = el("select", { "aria-label": "Traces of", onchange: (event) => look({ traces: event.target.value, stretch: undefined }) }, ...records.map((name) => el("option", { value: name, selected: name === traces }, name)));
@@ -92,7 +90,7 @@ async function leaveOut(record, stretch) {
   }
 }
 
-/** After a drag: what the zoomed range may be used for. */
+/** After a zoom: offers actions for the zoomed range. */
 function zoomTools(traces, again) {
   return (plot, canvas, from, to) => {
     const figure = canvas.closest("figure");

@@ -1,4 +1,4 @@
-// Which effect is missing, as cards in the order of their probability; a click adds one, and the error falls.
+// Candidates for the missing effect as cards in the order of their probability; a click adds one.
 import { sliders } from "./adjust.js";
 import { effects } from "./catalogue.js";
 import { choice, chosenRecords, loadFolder, workOn } from "./choice.js";
@@ -11,10 +11,10 @@ import { firstLook } from "./look.js";
 import { save } from "./plot_files.js";
 import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
 
-const kShown = 0.01; // probability; less is folded away
-const documents = new Map(); // of jobs that are done: they do not change
+const kShown = 0.01; // candidates with a smaller probability are collapsed
+const documents = new Map(); // of completed jobs, which do not change
 let catalogue = [];
-let next = []; // kinds of a set that are still to be added, one after the other
+let next = []; // remaining kinds of a set, to add one after the other
 let shown = 0;
 
 async function documentOf(job) {
@@ -28,7 +28,7 @@ function titleOf(kinds) {
 
 const madeBy = (model) => jobs.find((job) => job.state === "done" && job.model === model && job.request.do !== "identify");
 
-/** The jobs that led to a model, first one first. */
+/** The jobs that led to a model, in their order. */
 function stepsTo(model) {
   const steps = [];
   for (let job = madeBy(model); job && !steps.includes(job); job = madeBy(job.request.model)) steps.unshift(job);
@@ -55,8 +55,7 @@ export function add(kind, over) {
   return begin({ ...request("add"), kind, ...(over ? { over } : {}) });
 }
 
-/**
- * When a job has ended: the new model is worked on, and the rest of a set follows.
+/** After a job has ended: selects the new model and adds the next effect of a set.
  * @param {any[]} ended
  */
 export async function follow(ended) {
@@ -81,7 +80,7 @@ function undo() {
   workOn(made.request.model);
 }
 
-/** One page of what was done, on held-back records where there are some. */
+/** Saves one page with all steps, on validation records if there are any. */
 async function saveStory() {
   const records = chosenRecords();
   const told = await post("/api/story", { do: "compare", models: [choice.model], records: records.validate.length ? records.validate : records.train, accept: choice.accepted }).catch((error) => notice(error.message));
@@ -112,7 +111,7 @@ async function ladder(place, steps) {
   };
 }
 
-/** The parameters of the last fit, with what was set by hand since, and those of what it added. */
+/** The parameters of the last fit, with values set by hand since then, and those of the added effect. */
 async function fitted(steps) {
   let parameters = [], added = [];
   for (const job of steps) {
@@ -144,7 +143,7 @@ function plainCard(title, share, text, action = null) {
   return el("li", { className: "card plain" }, el("h3", {}, title), probabilityBar(share), el("p", {}, text), action);
 }
 
-/** Effects that these records cannot tell apart, with the run that would. */
+/** Effects that these records cannot separate, with the run that would separate them. */
 function rivals(group, told) {
   const advice = [...new Set(group.map((kind) => told.candidates.find((one) => one.kinds.at(-1) === kind)?.separate_by).filter(Boolean))];
   const quoted = (name) => (/^[\w./+-]+$/.test(name) ? name : "'" + name.replaceAll("'", "'\\''") + "'");
@@ -168,7 +167,7 @@ function cards(told) {
   return places;
 }
 
-/** The first panel, then the cards, then all the rest of the report. */
+/** The first panel, then the cards, then the rest of the report. */
 async function diagnosis(place, job) {
   const [told, html] = await Promise.all([documentOf(job), report(job.report)]);
   return explained(place, told, html, job.command, el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Open the whole report")));
@@ -200,7 +199,7 @@ function head() {
 
 /**
  * @param {Element} place
- * @param {string} [wish] "find": the search begins, unless it was made
+ * @param {string} [wish] "find": starts the search unless there is a result
  */
 export async function showEffects(place, wish) {
   const mine = ++shown;

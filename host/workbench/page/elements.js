@@ -19,8 +19,7 @@ export function el(tag, properties = {}, ...children) {
 
 let noticeTimer = 0;
 
-/**
- * Says something in passing, to screen readers too.
+/** Shows a short message, also to screen readers.
  * @param {string} text
  */
 export function notice(text) {
@@ -31,8 +30,7 @@ export function notice(text) {
   noticeTimer = setTimeout(() => box.classList.remove("shown"), 6000);
 }
 
-/**
- * The command that does the same, to copy.
+/** The equivalent command, to copy.
  * @param {string} command
  */
 export function commandLine(command) {
@@ -43,8 +41,7 @@ export function commandLine(command) {
   return el("div", { className: "command" }, el("code", {}, command), el("button", { type: "button", onclick: copy }, "Copy"));
 }
 
-/**
- * What went wrong, and what can be done about it.
+/** An error with its remedy.
  * @param {Error & {log?: any[]}} error
  * @param {(words: string[]) => void} [accept]
  */

@@ -1,8 +1,7 @@
-// Errors before and after, as bars and in units of the machine.
+// Errors before and after, as bars and as a table in physical units.
 import { el, percent, short } from "./elements.js";
 
-/**
- * Channel, factor and unit that a mechanic reads.
+/** Channel name, factor and unit for the user.
  * @param {string} name
  */
 function shown(name) {
@@ -15,8 +14,7 @@ function change(before, after) {
   return (part > 0 ? "+" : "−") + Math.round(100 * Math.abs(part)) + " %";
 }
 
-/**
- * Combined error over the noise floor of steps, training and held back.
+/** Combined errors of steps relative to the noise floor, for training and validation.
  * @param {{label: string, train: number, validate: number}[]} steps
  */
 export function errorBars(steps) {
@@ -47,8 +45,7 @@ function table(title, caption, heads, rows, numbers) {
       el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map(cell)))))));
 }
 
-/**
- * Of every channel, before and after.
+/** Errors of every channel, before and after.
  * @param {any} given
  * @param {any} after each { train, validate } of figures
  */
@@ -64,8 +61,7 @@ export function errorTable(given, after) {
   return table("Error in units of the machine", "RMS, and share of the signal.", ["records", "channel", "before", "after", "change", "noise floor"], rows, 2);
 }
 
-/**
- * "cogging.cosine" as the model file has it, with its unit.
+/** The key of a parameter such as "cogging.cosine" in the model file, which includes its unit.
  * @param {string} name
  * @param {any[]} catalogue
  * @param {boolean} rotary
@@ -78,8 +74,7 @@ export function keyOf(name, catalogue, rotary) {
   return kind.replaceAll("_", " ") + ": " + (known ? (rotary ? known.rotary_key : known.linear_key) + (known.id === id ? "" : number) : id);
 }
 
-/**
- * What was fitted.
+/** Table of the fitted parameters.
  * @param {any[]} parameters of axis-addition/1
  * @param {any[]} catalogue
  * @param {boolean} rotary

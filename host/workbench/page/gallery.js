@@ -1,4 +1,4 @@
-// The catalogue: how each effect shows, what it is confused with, how to tell them apart, and the remedy.
+// The catalogue: symptoms of each effect, similar effects, how to separate them, and the remedy.
 import { choice } from "./choice.js";
 import { el } from "./elements.js";
 import { effects } from "./catalogue.js";
@@ -8,8 +8,7 @@ import { forgetPlots, showPlot } from "./report_parts.js";
 
 const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and their connections", encoder: "Encoder", tachometer: "Tachometer", table: "Table, as a scale of its own sees it" };
 
-/**
- * What the effect leaves on a standard run of the plant; drawn when its entry opens.
+/** Draws the residual of the effect in a standard run when its entry is opened.
  * @param {HTMLDetailsElement} box
  * @param {any} info
  */
@@ -41,7 +40,7 @@ function entry(info, catalogue) {
 
 /**
  * @param {Element} place
- * @param {string} [kind] opened
+ * @param {string} [kind] entry to open
  */
 export async function showGallery(place, kind) {
   const catalogue = await effects();

@@ -1,4 +1,4 @@
-// Long jobs in the program: starts, shows and cancels them. Their state is in the folder.
+// Starts, shows and cancels long jobs of the program. Their state is in the folder.
 import { commandLine, el, notice, percent } from "./elements.js";
 import { fileAddress, get, post } from "./exchange.js";
 
@@ -6,12 +6,11 @@ import { fileAddress, get, post } from "./exchange.js";
 export let jobs = [];
 const listeners = [];
 const isOpen = (job) => job.state === "queued" || job.state === "running";
-/** @type {Set<number>|undefined} jobs that had ended at the last look; a short one is never seen open */
+/** @type {Set<number>|undefined} jobs that had ended at the last poll, because a short job may never be seen running */
 let endedBefore;
 let timer = 0;
 
-/**
- * Called with the jobs that have ended since the last look.
+/** Registers a listener that receives the jobs that have ended since the last poll.
  * @param {(ended: any[]) => void} listener
  */
 export function onJobs(listener) {
@@ -50,8 +49,7 @@ export async function cancel(job) {
   await lookAtJobs();
 }
 
-/**
- * With its document.
+/** A job with its document.
  * @param {any} job
  */
 export function whole(job) {
@@ -66,7 +64,7 @@ export function titleOf(job) {
   return (kVerbs[job.request.do] || job.request.do) + kind + ": " + job.request.model;
 }
 
-/** A bar for each job that is under way. */
+/** A progress bar for each running job. */
 export function progressBars() {
   return jobs.filter(isOpen).reverse().map((job) => {
     const known = job.state === "running" && job.share > 0;

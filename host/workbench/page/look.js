@@ -1,12 +1,12 @@
-// The first look: what the force balance alone says of the chosen records, seconds before the search by motion ends.
+// The first look: result of the force-balance regression alone for the chosen records. It takes seconds.
 import { choice, chosenRecords } from "./choice.js";
 import { post } from "./exchange.js";
 
-/** @type {Map<string, Promise<any>>} by request: files do not change while their names are the same */
+/** @type {Map<string, Promise<any>>} by request; files with the same name do not change */
 const looks = new Map();
 
 /**
- * { document, report, command } of `axistool diagnose --quick`; null where the records show no force balance.
+ * { document, report, command } of `axistool diagnose --quick`; null if the records allow no force balance.
  * @returns {Promise<any>}
  */
 export function firstLook() {
@@ -18,8 +18,7 @@ export function firstLook() {
   return /** @type {Promise<any>} */ (looks.get(key));
 }
 
-/**
- * The most probable answer: { kinds, probability }; no kinds for something else or nothing.
+/** The most probable answer: { kinds, probability }; `kinds` is empty for "something else" and "nothing is missing".
  * @param {any} told axis-diagnosis/1
  */
 export function mostProbable(told) {

@@ -1,4 +1,4 @@
-// The page: views by their address, keys, and what makes them draw again.
+// The page: selects the view by its address, handles keys, and redraws after changes.
 import { acceptDrops, loadFolder, onChoice } from "./choice.js";
 import { showCompare } from "./compare.js";
 import { el, errorBox } from "./elements.js";

@@ -1,4 +1,4 @@
-// Logs of any controller: what their channels are taken as, and records of them.
+// Opens logs of any controller: shows the recognised channels and makes records.
 import { giveRoles, isForJudging } from "./choice.js";
 import { commandLine, el, notice, percent, short } from "./elements.js";
 import { post } from "./exchange.js";

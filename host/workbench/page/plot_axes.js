@@ -1,11 +1,10 @@
 // Axes of a plot: linear or logarithmic.
 import { el } from "./elements.js";
 
-/** Whether all values have one sign, so that their magnitude is a scale of its own. */
+/** Whether all values have the same sign, so that a logarithmic axis of magnitudes is possible. */
 const hasOneSign = (values) => values.some((value) => value !== 0) && (values.every((value) => value >= 0) || values.every((value) => value <= 0));
 
-/**
- * Buttons for the axes that can be logarithmic, where there are some.
+/** Buttons for the axes that can be logarithmic.
  * @param {any} frame in which report.js has drawn the plot
  * @param {any} plot
  * @returns {HTMLElement[]}

@@ -1,16 +1,14 @@
 // Saves a figure: its numbers as CSV, its picture as PNG.
 import { el } from "./elements.js";
 
-/**
- * What report.js, a script of its own, offers.
+/** Functions of report.js, which is a separate script.
  * @returns {{draw: Function, unpack: (packed: any) => Float64Array}}
  */
 export const plots = () => /** @type {any} */ (window).axisPlots;
 
 const word = (text) => (/[",\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text);
 
-/**
- * One row a point.
+/** CSV with one row for each point.
  * @param {any} plot as report.js draws it
  * @returns {string}
  */
@@ -35,8 +33,7 @@ export function csvOf(plot) {
   return rows.join("\n") + "\n";
 }
 
-/**
- * Canvases, swatches and texts of a figure where they stand.
+/** Picture of a figure: its canvases, colour samples and texts at their positions.
  * @param {HTMLElement} figure
  * @returns {HTMLCanvasElement}
  */
@@ -82,8 +79,7 @@ export function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/**
- * Buttons for both.
+/** Buttons for CSV and PNG.
  * @param {HTMLElement} figure
  * @param {any} plot
  */

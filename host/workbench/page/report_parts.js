@@ -1,4 +1,4 @@
-// The reports of the commands as parts of this page: the same blocks and the same plots, drawn by the same script.
+// Shows reports of the commands as parts of this page, with the same blocks and plots, drawn by the same script.
 import { axisTools } from "./plot_axes.js";
 import { fileTools, plots as plotScript } from "./plot_files.js";
 
@@ -20,8 +20,7 @@ export function partsOf(html) {
 /** @type {{box: Element, forget: () => void}[]} */
 let drawn = [];
 
-/**
- * Takes away all plots, or those in a place: called before a view goes.
+/** Destroys all plots, or those in a place. Called before a view is removed.
  * @param {Element} [place]
  */
 export function forgetPlots(place) {
@@ -30,8 +29,7 @@ export function forgetPlots(place) {
   drawn = drawn.filter((one) => !gone.includes(one));
 }
 
-/**
- * One plot of data that came by themselves.
+/** Draws one plot from data without a report.
  * @param {Element} frame in the page
  * @param {any} plot as report.js draws it
  */
@@ -40,7 +38,8 @@ export function showPlot(frame, plot) {
 }
 
 /**
- * Puts the blocks into the page and draws their plots. Frames lose their ids: several reports may stand in one view.
+ * Puts the blocks into the page and draws their plots. Removes the ids of the frames, because a view may contain
+ * several reports.
  * @param {Element} place
  * @param {ReportParts} parts
  * @param {(block: Element) => boolean} [wanted]

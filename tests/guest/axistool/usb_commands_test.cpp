@@ -44,7 +44,7 @@ class UsbCommands : public testing::TestWithParam<host::HidBackend> {
                                                             "--flash", folder_.path(serial_number + ".flash"), "--x",
                                                             kCase + "/model.toml"});
   }
-  /// The board, with the flash that it had when it was last unplugged.
+  /// Connects the board with the flash contents of its last disconnection.
   void plug_in() {
     board_ = start_board("BENCH");
     expect_boards(1);
@@ -54,7 +54,7 @@ class UsbCommands : public testing::TestWithParam<host::HidBackend> {
     expect_boards(0);
   }
 
-  /// One line of shell around axistool; `before` comes first.
+  /// Runs axistool in a shell line that begins with `before`.
   ProgramRun run(const std::string& arguments, const std::string& before = "",
                  const std::string& streams = "2>&1") const {
     return run_program("AXISTOOL_HIDAPI=" + std::string(host::name_of(GetParam())) + " timeout 60 " + before + " " +
@@ -102,7 +102,7 @@ TEST_P(UsbCommands, EndWhenThePlugIsPulledAndLeaveTheBoardIntact) {
   for (const std::string& command :
        std::vector<std::string>{"list", "info", "get-params", "set-params x.feedback.k1=20", "save", "diff-params",
                                 "capture -o " + folder_.path("never.csv") + " --for 60"}) {
-    board_->pause();  // the command begins, and does not get to its end
+    board_->pause();  // the command begins but cannot finish
     std::thread plug([&] {
       std::this_thread::sleep_for(400ms);
       board_->kill();
@@ -157,7 +157,7 @@ TEST_P(UsbCommands, TellTwoBoardsApart) {
   EXPECT_THAT(unclear.output, AllOf(HasSubstr("usb:BENCH"), HasSubstr("usb:SECOND")));
 }
 
-/// What takes long, and is the same by either back end.
+/// Long tests that do not depend on the back end.
 class UsbBoard : public UsbCommands {};
 
 TEST_P(UsbBoard, IsMeasured) {
@@ -187,7 +187,7 @@ TEST_P(UsbBoard, OpensAtOnceWhereLinuxPollsItAlways) {
   EXPECT_EQ(load_usbhid(""), 0);
 }
 
-/// An image goes over the bus block by block; the board leaves it at the restart and comes back with the new program.
+/// The image is sent block by block; the board disconnects at the restart and returns with the new program.
 TEST_P(UsbBoard, IsUpdated) {
   const auto image = [this](const std::string& version) {
     EXPECT_EQ(run("sim --write-image " + folder_.path(version) + " --image-version " + version).exit_code, 0);

@@ -1,5 +1,5 @@
-// axistool run with a simulated board of two axes on Linux' own USB stack. Runs in the guest, whose time goes by its
-// instructions: a busy computer does not change it.
+// axistool run with a simulated board of two axes on Linux' own USB stack. Runs in the guest, which has a deterministic
+// clock, so that load on the computer has no effect.
 #include <gtest/gtest.h>
 
 #include <memory>

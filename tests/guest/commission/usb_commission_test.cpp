@@ -18,8 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing::Contains;
 
-/// The board is a separate process behind the kernel's USB stack, and its axis moves in the guest's time, however fast
-/// its host is. Catches a step of commissioning that works only if board and host take turns.
+/// The board is a separate process behind the kernel's USB stack, and its axis moves in the guest's time, independent
+/// of the host's speed. Catches a step of commissioning that works only if board and host take turns.
 TEST(UsbCommission, FindsWhatCogsAndMakesItBetter) {
   if (!guest_test::in_guest()) GTEST_SKIP() << "runs in the guest: tests/guest/run.sh";
   const TemporaryFolder folder;

@@ -1,5 +1,5 @@
-// cortex_bridge FILE SERIAL: gives the emulated Cortex-M board, whose serial port is at the other end of FILE, a USB
-// controller: plugs it into vhci-hcd and carries its reports.
+// cortex_bridge FILE SERIAL: USB controller for the emulated Cortex-M board, whose serial port is at the other end of
+// FILE: connects it to vhci-hcd and transfers its reports.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -58,7 +58,7 @@ class StreamPort {
 
 using Cable = firmware::boards::ComputerEnd<StreamPort>;
 
-/// Carries reports one way; keeps the one that has no room yet.
+/// Transfers reports in one direction; keeps a report for which there is no room yet.
 class Lane {
  public:
   template <typename From, typename To>
@@ -92,7 +92,7 @@ void run(const char* path, const char* serial_number) {
       told += passed;
     }
     while (cable.poll()) continue;
-    if (cable.heard_hello()) {  // the board has started: as on a real one, its controller is plugged in anew
+    if (cable.heard_hello()) {  // the board has started: its controller reconnects, as on a real board
       controller.reset();
       to_board.clear();
       to_host.clear();

@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 using host::BoardClient;
 using testing::HasSubstr;
 
-/// The board beside the guest: tests/guest/with_cortex_m.sh.
+/// The board, which is emulated beside the guest: tests/guest/with_cortex_m.sh.
 class CortexM : public testing::TestWithParam<host::HidBackend> {
  protected:
   static void SetUpTestSuite() {
@@ -41,10 +41,10 @@ class CortexM : public testing::TestWithParam<host::HidBackend> {
   }
 
   const host::HidLibrary& library() const { return host::hid_library(GetParam()); }
-  /// Two emulators, each with its own time: the board's may pass slowly as seen from here.
+  /// Long time-outs, because the board's emulator has a separate, possibly slower clock.
   BoardClient client() const { return BoardClient(host::open_usb_board("CORTEX", library()), 30s); }
 
-  /// A reset takes the board off the bus for a moment; until then the board of before may still answer.
+  /// A reset disconnects the board briefly; until then the board may still answer from before the reset.
   void restart() const {
     std::uint32_t resets = 0;
     {
@@ -73,12 +73,12 @@ class CortexM : public testing::TestWithParam<host::HidBackend> {
   }
 
   TemporaryFolder folder_;
-  static std::optional<Child> bridge;  ///< for all tests: the board stays where it is
+  static std::optional<Child> bridge;  ///< for all tests: the board stays connected
 };
 std::optional<Child> CortexM::bridge;
 
 TEST_P(CortexM, KeepsParametersOverAReset) {
-  // Another set for each back end: the second must not find what it is to write.
+  // A different set for each back end, so that the second does not find its values already set.
   firmware::ParameterValues wanted = firmware_test::paper_values();
   if (GetParam() == host::HidBackend::libusb) firmware_test::fit_axis(wanted, "y", firmware_test::kPaperY);
   {
@@ -119,8 +119,8 @@ TEST_P(CortexM, ServesTheCommands) {
   EXPECT_EQ(host::read_record(record).size(), 10000u) << "at 1 kHz";
 }
 
-/// A board that has other parameters from the tests before, with drives that its image computes: the float arithmetic
-/// and the interrupt are the target's. Against the host's simulation of the same drives.
+/// Paths on the board, whose image also simulates the drives, with the target's float arithmetic and interrupt;
+/// compared with the host's simulation of the same drives.
 class CortexMPath : public CortexM {
  protected:
   void SetUp() override {

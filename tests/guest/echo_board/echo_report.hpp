@@ -22,7 +22,7 @@ inline std::uint32_t number_of(const hal::HidReport& report) {
   return number;
 }
 
-/// Asks for `count` numbered reports, one a millisecond.
+/// Requests `count` numbered reports, one per millisecond.
 inline hal::HidReport stream_request(std::uint32_t count) {
   hal::HidReport report = numbered(count);
   std::memcpy(report.data() + sizeof count, &kStreamMark, sizeof kStreamMark);

@@ -24,7 +24,8 @@ constexpr const char* kSysfs = "/sys/devices/virtual/misc/uhid";
 constexpr std::uint8_t kGpioConfiguration = 0x02, kGetGpio = 0x03, kSetGpio = 0x04, kVersion = 0x05,
                        kSmbusConfiguration = 0x06, kLock = 0x20;
 
-/// What the driver needs of the chip's report descriptor: identifiers and lengths. One byte an element, vendor page.
+/// The part of the chip's report descriptor that the driver needs: identifiers and lengths. One byte per element,
+/// vendor page.
 constexpr std::array<std::uint8_t, 71> kReportDescriptor{0x06, 0x00,
                                                          0xFF, 0x09,
                                                          0x01, 0xA1,

@@ -1,5 +1,5 @@
-// An emulated CP2112 (Silicon Labs, USB to eight GPIO lines and SMBus) on /dev/uhid: the kernel's own driver hid-cp2112
-// makes a real GPIO chip of it. Reports: Silicon Labs, AN495, chapter 4.
+// An emulated CP2112 (Silicon Labs, USB to eight GPIO lines and SMBus) on /dev/uhid: the kernel's driver hid-cp2112
+// creates a real GPIO chip from it. Reports: Silicon Labs, AN495, chapter 4.
 #pragma once
 
 #include <linux/uhid.h>
@@ -22,7 +22,7 @@ class Cp2112 {
     std::chrono::system_clock::time_point at;
   };
 
-  /// `pulled_up`: one bit a line; its level while the line is no output. Throws std::runtime_error without /dev/uhid.
+  /// `pulled_up`: one bit per line, its level while the line is an input. Throws std::runtime_error without /dev/uhid.
   explicit Cp2112(std::uint8_t pulled_up);
   Cp2112(const Cp2112&) = delete;
   Cp2112& operator=(const Cp2112&) = delete;
@@ -38,7 +38,7 @@ class Cp2112 {
   std::vector<Edge> edges() const;
   void forget_edges();
 
-  /// Pulls the plug; the destructor does it too.
+  /// Disconnects the chip; the destructor does so, too.
   void unplug();
 
  private:

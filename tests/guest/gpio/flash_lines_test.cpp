@@ -1,4 +1,4 @@
-// `axistool flash` on a real GPIO chip: what BOOT0 and NRST do, and when. Runs in the guest, with both versions of
+// `axistool flash` on a real GPIO chip: levels and times of BOOT0 and NRST. Runs in the guest, with both versions of
 // libgpiod.
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using guest_test::Cp2112;
 constexpr unsigned kBoot0 = 2, kReset = 5;
 constexpr std::uint8_t kResetPulledUp = 1u << kReset;
 
-/// A dfu-util that finds a board, keeps what it is given, and writes down when it was called.
+/// A fake dfu-util that finds a board, keeps its input, and records the times of its calls.
 constexpr const char* kDfuUtil = R"(#!/bin/bash
 here=$(dirname "$0")
 echo "$EPOCHREALTIME $*" >>"$here/calls"

@@ -14,7 +14,7 @@ namespace guest_test {
 
 inline bool in_guest() { return std::getenv("AXIS_GUEST") != nullptr; }
 
-/// Waits until as many boards can be opened as there should be; false if that does not come about.
+/// Waits until exactly `count` boards can be opened; false if this takes longer than `limit`.
 inline bool boards_become(std::size_t count, const host::HidLibrary& library, std::chrono::seconds limit) {
   const auto end = std::chrono::steady_clock::now() + limit;
   do {

@@ -51,7 +51,7 @@ class PathBench {
     EXPECT_GT(rms_um, 0.3) << "an encoder of 2.4 um sees no less";
   }
 
-  /// Two seconds of silence are a lost host; the ramp from 20 mm/s takes less than another half.
+  /// After 2 s without heartbeat the host counts as lost; the ramp from 20 mm/s takes less than 0.5 s.
   void kill_host() const {
     fit("host.timeout=2");
     auto host = start_long_arc();
@@ -75,7 +75,7 @@ class PathBench {
     EXPECT_THAT(run("faults").output, testing::HasSubstr("host_heartbeat_lost"));
   }
 
-  /// The host stands still for longer than the nodes last, and the board waits for it longer than that.
+  /// The host pauses for longer than the nodes last, but for less than the board's time-out.
   void starve() const {
     fit(kPatient);
     auto host = start_long_arc();
@@ -113,7 +113,7 @@ class PathBench {
                        streams);
   }
 
-  /// Both axes are the same drive, with a design for it, and count from where they stand.
+  /// Sets a design on both axes, which have the same drive; the present positions become home.
   void fit(const std::string& more) const {
     ASSERT_EQ(run_axistool("design " + model_ + " -o " + file("x.toml")).exit_code, 0);
     std::ifstream in(file("x.toml"));
@@ -136,7 +136,7 @@ class PathBench {
   struct Place {
     double x_mm = 0.0, y_mm = 0.0;
     bool stands = false, is_on = false;
-    double ahead_s = 0.0;  ///< nodes that the board has
+    double ahead_s = 0.0;  ///< duration of the nodes on the board
     firmware::PathEnd end = firmware::PathEnd::none;
     double turned() const { return std::atan2(y_mm, x_mm - kRadius_mm); }
     double off_um() const { return 1e3 * std::abs(std::hypot(x_mm - kRadius_mm, y_mm) - kRadius_mm); }
@@ -157,7 +157,7 @@ class PathBench {
     }
     return place;
   }
-  /// Until the arc is half a radius under way, and the host well ahead of it.
+  /// Waits until the axes have moved half a radius along the arc and the host is well ahead.
   void await_motion() const {
     for (int tries = 0; tries < 400; ++tries) {
       const Place at = place();

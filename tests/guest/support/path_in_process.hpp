@@ -48,7 +48,7 @@ inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>&
   return done;
 }
 
-/// Contour error, um rms, of two axes that are this drive. NaN where it does not end.
+/// Contour error, um rms, of two axes with this drive. NaN if the path does not end.
 inline double contour_rms_in_process(const sim::DriveDescription& drive, const std::vector<std::string>& parameters,
                                      const std::string& program) {
   const PathInProcess done = follow_in_process({drive, drive}, parameters, program);

@@ -1,4 +1,4 @@
-// The way to a board over Linux' own USB and HID stack, by both of hidapi's back ends: runs in the guest.
+// The connection to a board over Linux' USB and HID stack, with both back ends of hidapi. Runs in the guest.
 #include <grp.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST_P(Usb, CarriesAThousandReportsASecondWithoutLoss) {
   wait_for_boards(1);
   const auto link = open_usb_board("STREAM", library());
   link->send(echo_board::stream_request(kReports));
-  std::this_thread::sleep_for(500ms);  // a program that is busy meanwhile loses nothing
+  std::this_thread::sleep_for(500ms);  // a program that is busy meanwhile loses no report
   for (std::uint32_t i = 0; i < kReports; ++i) {
     const auto report = link->receive(2s);
     ASSERT_TRUE(report) << i;

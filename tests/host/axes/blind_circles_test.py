@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""axistool circle on machines that it knows nothing of: two axes with loops, friction, play and geometry of their own
-physics, integrated here, one to three causes each, with and without a ballbar. Seeds are printed; with an argument as
-many machines are tried (60 for the figures in MEASURED)."""
+"""axistool circle on machines of an independent simulation: two axes with loops, friction, play and geometry, one to
+three causes each, with and without a ballbar. Prints the seeds. The argument is the number of machines (60 for the
+figures in MEASURED)."""
 
 import json
 import math
@@ -47,8 +47,8 @@ REFERENCE = {"x": [RADIUS * math.cos(a) for a in PATH], "y": [RADIUS * math.sin(
 
 
 class Axis:
-    """A mass behind position and speed feedback with feed-forward of both derivatives; friction after Dahl, whose
-    feed-forward comes late; torque ripple; a shaker."""
+    """A mass with position and speed feedback and feed-forward of both derivatives; Dahl friction with late
+    feed-forward; torque ripple; a vibration source."""
 
     def __init__(self, causes: dict[str, float], name: str, draw: dict[str, float]) -> None:
         natural = 2.0 * math.pi * 30.0
@@ -97,7 +97,7 @@ def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict
             gap = causes.get(f"backlash {axis}", 0.0) / 2.0
             seat[axis] = min(max(seat[axis], at[axis] - gap), at[axis] + gap)
             moved[axis] = at[axis] - last[axis]
-            if moved[axis]:  # play sideways is taken up within ten micrometres
+            if moved[axis]:  # lateral play is taken up within 10 um
                 side[axis] = max(-1.0, min(1.0, side[axis] + 2.0 * moved[axis] / 0.01))
         last = at
         x, y = seat["x"], seat["y"]
@@ -163,7 +163,7 @@ def write(path: Path, motor: dict[str, list[float]], table: tuple[list[float], l
 
 
 def true_sizes(causes: dict[str, float], draw: dict[str, float], has_bar: bool, motor: dict[str, list[float]]) -> dict[str, float]:
-    """What the radial deviation loses when one cause is taken away: its range while the circle is run steadily."""
+    """The change of the radial deviation when one cause is removed: its range at steady feed."""
     turning = [k for k in range(1, len(PATH)) if abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[0] - 1.0) < 0.01
                or abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[1] - 1.0) < 0.01]
     whole = radial(*table_of(motor, causes, draw)) if has_bar else radial(motor["x"], motor["y"])

@@ -1,5 +1,5 @@
-// Two drives that differ by a factor of two in inertia and friction, and in the possible bandwidth of their loops:
-// lines and circles of the firmware's axes on the plants, with each axis' best loop and with one loop for both.
+// Two drives that differ by a factor of two in inertia, friction and possible bandwidth: lines and circles of the
+// firmware's axes on the plants, with each axis's best loop and with one loop for both.
 #include "host/axes/machine_design.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using host::Path;
 
 constexpr std::uint64_t kSeed = 11;
 
-/// The same with encoders of a tenth of a micrometre, quiet tachometers and viscous friction alone.
+/// The same with encoders of 0.1 um, low-noise tachometers and viscous friction only.
 const Tasks& quiet_machine() {
   static const Tasks tasks = [] {
     Tasks quiet = machine();
@@ -54,8 +54,8 @@ std::array<host::MachineAxis, 2> axes_of(const Tasks& tasks, const host::LoopSet
   return axes;
 }
 
-/// Largest distance of the encoders' point to either side of a line of 90 mm. Its first and last `ends_mm` are
-/// left out: there the axes break away and stop, and friction, not the loops, decides.
+/// Largest distance of the encoder positions from a line of 90 mm. Ignores its first and last `ends_mm`, where the axes
+/// break away and stop and friction dominates.
 double line_error_um(const Tasks& tasks, const host::LoopSet& set, double angle_deg, double feed, bool back,
                      double ends_mm = 1.0) {
   const double angle = angle_deg * std::numbers::pi / 180.0 + (back ? std::numbers::pi : 0.0), length = 90.0;
@@ -71,7 +71,7 @@ double line_error_um(const Tasks& tasks, const host::LoopSet& set, double angle_
   return most;
 }
 
-/// Difference of the half axes of the ellipse that fits the encoders' points of two turns, after the first quarter.
+/// Difference of the half axes of the ellipse fitted to the encoder positions of two turns, after the first quarter.
 double ellipse_um(const host::LoopSet& set, double feed, int turns) {
   const double radius = 35.0;
   const auto run =
@@ -113,7 +113,7 @@ TEST_P(Machine, OneLoopKeepsCirclesRound) {
     }
 }
 
-/// If neither friction nor the encoder's step hides it, the forecast agrees with the plants.
+/// The forecast agrees with the plants if neither friction nor the encoder's resolution hides the error.
 TEST_P(Machine, TheForecastIsWhatTheAxesDo) {
   const host::MachineDesign design = designed(quiet_machine(), GetParam());
   for (const host::LoopSet* set : {&design.own, &design.matched})
@@ -147,7 +147,7 @@ TEST(MachineDesign, EstimatorsHaveEqualPoles) {
   }
 }
 
-/// A linear motor beside a screw: lengths in m and mm, one of them without a tachometer.
+/// A linear motor and a screw drive: lengths in m and mm, one of them without a tachometer.
 TEST(MachineDesign, ServesAxesOfDifferentKinds) {
   sim::DriveDescription linear;
   linear.name = "y";

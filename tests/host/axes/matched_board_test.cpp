@@ -1,7 +1,7 @@
-// Lines and circles of two unlike axes over the board's protocol: nodes streamed to a simulated board that has the
-// parameter files of `design`, encoders captured from it; with each axis' best loop and with one loop for both. The
-// errors are those of the captured points, computed here. Catches parameters that are lost or mixed up between the
-// design and the board, and a path whose axes are not in step.
+// Lines and circles of two unequal axes over the board's protocol, on a simulated board with the parameter files of
+// `design`, with each axis's best loop and with one loop for both. Computes the errors from the captured encoder
+// positions. Catches parameters that are lost or mixed up between the design and the board, and axes that are not
+// synchronised.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -44,8 +44,8 @@ class MatchedBoard : public testing::TestWithParam<bool> {
 
 constexpr double kLength_mm = 90.0, kEnds_mm = 1.0;
 
-/// Largest distance from a line, there and back, without its ends, where friction decides. The contour error that `run`
-/// tells must be the same.
+/// Largest distance from a line, forth and back, without its ends, where friction dominates. The contour error reported
+/// by `run` must be the same.
 std::array<double, 2> line_errors_um(const guest_test::PathInProcess& done, double angle) {
   const host::PathCapture& capture = done.capture;
   const std::vector<double> told_um = host::contour_error_um(capture, done.path, done.machine.scale);
@@ -65,8 +65,8 @@ std::array<double, 2> line_errors_um(const guest_test::PathInProcess& done, doub
   return most;
 }
 
-/// The rows of the last four whole turns at the feed: the ellipse of a part of a turn would count one axis' reversals
-/// more often than the other's. All of them must be at the feed.
+/// The rows of the last four full turns, all of which must be at the feed. A fraction of a turn would contain more
+/// reversals of one axis than of the other.
 std::pair<std::size_t, std::size_t> four_turns(const host::PathCapture& capture, double radius, double feed_mm_s) {
   const auto is_at_feed = [&](std::size_t k) {
     const double x = capture.reference_mm[0][k] - capture.reference_mm[0][k - 1];
@@ -108,8 +108,8 @@ TEST_P(MatchedBoard, KeepsLinesStraight) {
 
 TEST_P(MatchedBoard, KeepsCirclesRound) {
   const double radius = 35.0;
-  // At 160 mm/s y reaches its limit of acceleration where it turns back: a path slows down there, and the circle's
-  // radius follows the feed.
+  // At 160 mm/s y reaches its limit of acceleration where it reverses: the path slows down there, and the circle's
+  // radius depends on the feed.
   for (const double feed : {50.0, 150.0})
     for (const char* word : {"G2", "G3"}) {
       char turn[100];

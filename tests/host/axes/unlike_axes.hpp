@@ -1,5 +1,5 @@
-// Two drives that differ by a factor of two in inertia and friction, and in the possible bandwidth of their loops; what
-// their lines and circles are judged by.
+// Two drives that differ by a factor of two in inertia, friction and possible bandwidth, and the measures of their
+// lines and circles.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -17,7 +17,7 @@ inline sim::EffectEntry effect(const char* kind, std::map<std::string, double> p
   return {.kind = kind, .parameters = std::move(parameters), .ci95 = {}, .from = {}};
 }
 
-/// The paper's x axis, `times` as heavy and with as much friction, whose amplifier is late by `delay_s`.
+/// The paper's x axis with inertia and friction multiplied by `times` and an amplifier delay of `delay_s`.
 inline sim::DriveDescription drive(const char* name, double times, double delay_s) {
   sim::DriveDescription made = *host::paper_drive("x");
   made.name = name;
@@ -45,7 +45,7 @@ inline host::MachineDesign designed(const Tasks& tasks, bool zero_phase) {
   return host::design_machine(tasks, options, aim);
 }
 
-/// Difference of the half axes of the ellipse that fits these points (mm) about the centre (0, 0).
+/// Difference of the half axes of the ellipse about the centre (0, 0), fitted to these points (mm).
 class EllipseFit {
  public:
   explicit EllipseFit(double radius_mm) : radius_mm_(radius_mm) {}

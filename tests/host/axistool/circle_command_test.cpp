@@ -1,4 +1,4 @@
-// axistool circle on what hil writes and on records made by hand.
+// axistool circle on records of hil and on hand-made records.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ class Circle : public testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder_.path(name); }
 
-  /// Two turns at 60 mm/s about 30 mm in one direction; a ballbar beside it sees axes that are not square by `q_um`
-  /// over the radius.
+  /// Two turns of 30 mm radius at 60 mm/s in one direction, optionally with a ballbar that measures a squareness error
+  /// of `q_um` over the radius.
   std::string made(const std::string& name, double direction, double q_um, bool with_bar) const {
     std::string text =
         "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.002\nt_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm";
@@ -103,8 +103,8 @@ TEST_F(Circle, SaysWhatARecordLacks) {
   EXPECT_THAT(gap.output, HasSubstr("row 2 of y_mm is not a number"));
 }
 
-/// Two axes whose loops differ, on a board: the circles that the command makes show it. The mismatch follows from the
-/// parameters: with the reference velocity alone an axis lags by its own time.
+/// Two axes with different loops on a board: the circles show the mismatch. Its value follows from the parameters: with
+/// reference velocity only, each axis lags by its own time.
 TEST_F(Circle, ABoardMakesTheCircles) {
   const std::string model = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
   const SimulatedBoardProcess board(folder_.path(""), {"--x", model, "--y", model});

@@ -75,7 +75,7 @@ TEST_F(Compare, SeveralRecordsGetAFileEach) {
   EXPECT_EQ(lines_of(folder.path("p-2-train-jog.csv")).size(), lines_of(jog).size());
 }
 
-/// The rows after the last whole window are predicted, too; effects that reach back before a window need weights there.
+/// The rows after the last full window are also predicted. Effects with memory before a window need weights there.
 TEST_F(Compare, PredictionsEndWithWhatIsLeftOfAWindow) {
   const auto lines = lines_of(record);
   std::string cut = "# format: axis-record/1\n# sample_period_s: 0.001\n";
@@ -91,7 +91,7 @@ TEST_F(Compare, PredictionsEndWithWhatIsLeftOfAWindow) {
   EXPECT_EQ(lines_of(predictions).size(), 1533u);
 }
 
-/// A first capture is often such a record: nothing slides, so no regression is possible.
+/// A first capture is often at rest: nothing slides, so no regression is possible.
 TEST_F(Compare, ARecordAtRestIsSaidToBeOne) {
   std::string rest = "# format: axis-record/1\n# sample_period_s: 0.001\nt_s,u_V,x_mm,w_rad_s\n";
   for (int k = 0; k < 1500; ++k)
@@ -117,7 +117,7 @@ TEST_F(Compare, WritesAReportAndLeavesTheModelAlone) {
   EXPECT_THAT(text.str(), HasSubstr("What is missing, as torque"));
 }
 
-/// A second model used to be taken for a record.
+/// Catches a second model that is read as a record.
 TEST_F(Compare, SeveralModelsStandBesideEachOther) {
   std::string heavy = host::read_file(model);
   const std::size_t at = heavy.find("J_kg_m2 = ") + 10;
@@ -137,8 +137,7 @@ TEST_F(Compare, SeveralModelsStandBesideEachOther) {
   EXPECT_THAT(host::read_file(report), HasSubstr("\"name\":\"heavy.toml\""));
 }
 
-// A hand-written model does not state its training records: the record that validates it must not be proposed for
-// training.
+// A hand-written model does not name its training records. The validation record must not be proposed for training.
 TEST_F(Compare, TheNextCommandNamesTheFilesThatWereGivenAndTrainsOnNone) {
   const std::string copy = folder.path("my drive.toml");
   std::string heavy = host::read_file(model);

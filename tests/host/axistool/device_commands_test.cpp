@@ -1,4 +1,4 @@
-// The commands with a board, on the simulated one, as a user runs them.
+// The commands for boards, on a simulated board, as a user runs them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ class DeviceCommands : public testing::Test {
 
   ProgramRun run(const std::string& command) const { return board_.run(command); }
 
-  /// Must succeed; standard output alone.
+  /// Runs a command that must end with `exit_code`; returns the JSON on standard output.
   nlohmann::json json(const std::string& command, int exit_code = 0) const {
     const ProgramRun done = board_.run(command + " --json -", "2>/dev/null");
     EXPECT_EQ(done.exit_code, exit_code) << command << "\n" << done.output;
@@ -36,10 +36,10 @@ class DeviceCommands : public testing::Test {
     return file("params.toml");
   }
 
-  /// The design on a board with long time-outs, so that a loaded computer does not look like a lost host.
+  /// Sets the design on the board, with long time-outs, so that a loaded computer does not look like a lost host.
   void fit() const { ASSERT_EQ(run("set-params " + design() + " host.timeout=5").exit_code, 0); }
 
-  /// Of a capture that has not ended.
+  /// Number of lines of a capture that has not ended.
   std::ptrdiff_t lines_on_disk(const char* name) const {
     std::ifstream in(file(name) + ".unfinished");
     return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
@@ -221,7 +221,7 @@ TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
   EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
 }
 
-/// Catches a capture that a signal ends without a file.
+/// Catches a capture that leaves no file if a signal ends it.
 TEST_F(DeviceCommands, ASignalEndsACaptureWithWhatCame) {
   Child capture = board_.start("capture -o " + file("cut.csv") + " --for 3600 --json -", file("told.json"));
   EXPECT_TRUE(wait_until([&] { return lines_on_disk("cut.csv") > 600; }));

@@ -82,7 +82,7 @@ TEST(ImproveCommand, InterruptedItLeavesNothingBehindAndWhatWasThereWhole) {
   const TemporaryFolder folder;
   const std::string model = folder.write("better.toml", "what was there\n");
   const std::string data = (kCases / "pairs" / "case-00").string();
-  // Interrupted as by Ctrl-C, long before its end; 124 is how timeout says so.
+  // Interrupted as by Ctrl-C, long before its end; timeout then returns 124.
   const ProgramRun run =
       run_program("timeout --signal=INT 1 \"" AXISTOOL_PROGRAM "\" improve " + data + "/model.toml --train " + data +
                   "/train-jog.csv --validate " + data + "/validate.csv -o " + model + " --json " +

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// None of them is like the board's initial parameters, nor like the paper's drive.
+/// All differ from the board's initial parameters and from the paper's drive.
 struct Drive {
   const char* name;
   const char* data_sheet;
@@ -69,7 +69,7 @@ class Excite : public testing::TestWithParam<Drive> {
 std::string name_of(const testing::TestParamInfo<Drive>& info) { return "Drive" + std::to_string(info.index); }
 INSTANTIATE_TEST_SUITE_P(Drives, Excite, testing::ValuesIn(kDrives), name_of);
 
-/// The first record of a drive, made without a controller, suffices to identify it.
+/// The first record of a drive, made without a controller, is sufficient to identify it.
 TEST_P(Excite, StepsOnAnEmptyBoardIdentifyTheDrive) {
   const ProgramRun made =
       excite(std::string("x steps --yes --json - --box ") + GetParam().box + " --drive " + data_sheet(), "2>/dev/null");
@@ -108,7 +108,7 @@ TEST_P(ExciteRefuses, WithoutABoxOrUnitsOrConsent) {
   EXPECT_EQ(excite("x ladder --yes" + whole).exit_code, 8) << "a closed loop without a controller";
 }
 
-/// A box that the drive must leave: excite reports it, stops, and keeps the record so far.
+/// A box that the drive must leave: excite reports this, stops, and keeps the record so far.
 TEST_P(ExciteRefuses, ToGoOnOutsideTheBox) {
   const ProgramRun left =
       excite("x sine amplitude=6 frequency=0.5 --yes --box travel=4,speed=400,volts=6,time=3 --drive " + data_sheet());
@@ -134,8 +134,8 @@ const Drive kCoggingDrives[] = {
 class ExciteACoggingAxis : public Excite {};
 INSTANTIATE_TEST_SUITE_P(Drives, ExciteACoggingAxis, testing::ValuesIn(kCoggingDrives), name_of);
 
-/// Friction and cogging hold it at up to 1.2 V in one place and at 0.2 V in another. Catches a standstill in a cog that
-/// counts as a jam.
+/// Friction and cogging hold the axis up to 1.2 V in one place and up to 0.2 V in another. Catches a standstill in a
+/// cogging position that is treated as a jam.
 TEST_P(ExciteACoggingAxis, GoesOnWhereItHangs) {
   for (const char* words : {"x ramp", "x sine", "x chirp", "x steps"}) {
     const ProgramRun done =

@@ -1,4 +1,4 @@
-// Commands with another program as the machine: the example in Python, and programs that misbehave.
+// Commands with an external program as the machine: the example in Python, and faulty programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ const std::string kExample = AXIS_TEST_DATA "/../../host/examples/05-own-plant";
 
 std::string plant(const std::string& command) { return "\"plant:" + kExample + ".toml:" + command + "\""; }
 
-/// Its physics share no code with the simulator's. The data sheet's torque is 6.5 * 0.48 / 3.1 times the machine's.
+/// The example's physics is independent of the simulator. The data sheet's torque is 6.5 * 0.48 / 3.1 times the
+/// machine's.
 TEST(AnotherProgramsMachine, IsExcitedAndIdentified) {
   const TemporaryFolder folder;
   const ProgramRun excited = run_axistool(
@@ -49,7 +50,7 @@ TEST(AnotherProgramsMachine, StandsInForADriveOfAScenario) {
   EXPECT_EQ(run.exit_code, 0) << run.output;
 }
 
-/// A foreign scenario must not run programs without consent, and the question must show all of the command line.
+/// A scenario from elsewhere must not run programs without consent, and the question must show the whole command line.
 TEST(AnotherProgramsMachine, OfAScenarioRunsOnlyWhereThatIsAgreedTo) {
   const TemporaryFolder folder;
   const std::string trace = folder.path("trace");

@@ -1,4 +1,4 @@
-// Faults inserted into the text of good records: every command that reads records names them and claims nothing.
+// Faults are inserted into good records. Every command that reads records must report them and claim nothing else.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ class FaultyLogs : public testing::TestWithParam<Fault> {
     put("validate.csv", spoils_validation);
   }
 
-  /// Runs a command and compares its answer with the fault.
+  /// Runs a command that must report the fault.
   void expect_named(const std::string& command, const std::string& output) {
     SCOPED_TRACE(command);
     const ProgramRun run = run_axistool(command + " --json -", "2>/dev/null");

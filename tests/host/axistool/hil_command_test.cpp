@@ -1,4 +1,4 @@
-// axistool hil: shipped scenarios by name, one page of many, before and after.
+// axistool hil: shipped scenarios by name, one page for several scenarios, before and after.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 
 namespace {
 
-/// A log in counts whose set point gives their size: the data sheet contains the values from the log and the given
-/// constant.
+/// A log in counts, whose size follows from the set point: the data sheet contains the values from the log and the
+/// given constant.
 TEST(OpenCommand, LeavesADataSheetThatTheLogHasFilledIn) {
   const TemporaryFolder folder;
   std::string text = "t [s],Iq [A],Pos [inc],Set [mm]\n";

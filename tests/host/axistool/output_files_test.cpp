@@ -61,7 +61,7 @@ TEST_F(OutputFiles, NoCommandOverwritesItsInput) {
     expect_inputs_kept(line);
 }
 
-/// Files that stand in a positional of several meanings, or in the name of a device.
+/// Input files given by a positional with several meanings, or in the name of a device.
 TEST_F(OutputFiles, NoBoardCommandOverwritesItsInput) {
   const std::string m = " " + model, linked = folder.path("linked.toml");
   fs::create_symlink("m.toml", linked);
@@ -172,7 +172,7 @@ TEST_F(OutputFiles, NothingIsLeftBesideAnOutput) {
   EXPECT_EQ(files, 4u) << "model, two records, parameters";
 }
 
-/// The next program removes partial files of a killed one, but does not touch those of a running one.
+/// A program removes partial files of killed programs, but not those of running programs.
 TEST_F(OutputFiles, PartialFilesOfTheDeadGo) {
   const pid_t dead = ::fork();
   if (dead == 0) ::_exit(0);

@@ -1,4 +1,4 @@
-// From a first record to a decision by the commands alone, on a simulated board.
+// From a first record to a decision with the commands, on a simulated board.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ class Plan : public testing::Test {
 
 const char* const kBox = " --box travel=80,speed=200,volts=4,time=8 ";
 
-/// Catches a run that excite cannot carry out, a record that diagnose does not recognise, odds that are not used.
+/// Catches a run that excite cannot make, a record that diagnose does not recognise, and odds that are not used.
 TEST_F(Plan, SeparatesMakesAndDecides) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   ASSERT_EQ(excite(std::string("steps") + " --box travel=80,speed=200,volts=4,time=3", "steps.csv").exit_code, 0);
@@ -71,7 +71,8 @@ TEST_F(Plan, SeparatesMakesAndDecides) {
   EXPECT_GE(3.0 * found["decision"]["odds"].get<double>(), plan["expected_odds"].get<double>());
 }
 
-/// Pieces in open and in closed loop after one another: the loop opens and closes between them, in one even record.
+/// Pieces in open and closed loop one after the other: the loop opens and closes between them, and the record has no
+/// gap.
 TEST_F(Plan, RunsPiecesOfEveryLoopInOneRecord) {
   ASSERT_EQ(run_axistool("design " + file("model.toml") + " -o " + file("p.toml")).exit_code, 0);
   const auto piece = [](const std::string& kind, const std::string& rest, const std::string& numbers) {

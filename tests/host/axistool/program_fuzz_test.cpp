@@ -1,6 +1,6 @@
-// Every analysis command on inputs that were bent on purpose: lines and fields of records and models, tags of MATLAB
-// files. Whatever comes in, the program ends by itself with a documented exit code, says nothing unexpected, leaves its
-// inputs byte by byte, and what it has written is whole. AXIS_FUZZ_SECONDS makes it longer, AXIS_FUZZ_SEED another run.
+// Runs every analysis command on mutated inputs: lines and fields of records and models, tags of MATLAB files. For any
+// input, the program must end by itself with a documented exit code, without an "unexpected" error; its inputs must be
+// unchanged and its outputs complete. AXIS_FUZZ_SECONDS sets the duration, AXIS_FUZZ_SEED the seed.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
-/// Long where sanitizers watch; without them a run finds crashes only.
+/// Longer with sanitizers; without them only crashes are found.
 #ifdef AXIS_INSTRUMENTED
 constexpr double kSeconds = 60.0;
 #else
@@ -63,7 +63,7 @@ Lines fields_of(const std::string& line) {
   return fields;
 }
 
-/// A drive that swings, as its encoder and tachometer show it.
+/// A record of an oscillating drive with encoder and tachometer.
 std::string sample_record(std::mt19937& random) {
   std::string text = "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.001\nt_s,u_V,x_mm,w_rad_s\n";
   std::normal_distribution<double> noise(0.0, 0.2);
@@ -79,7 +79,7 @@ std::string sample_record(std::mt19937& random) {
   return text;
 }
 
-/// A MATLAB file of level 5, uncompressed: header, then one element a variable (MAT-File Format, chapter 1).
+/// An uncompressed MATLAB level 5 file: header, then one element for each variable (MAT-File Format, chapter 1).
 std::string sample_mat() {
   std::string file(128, ' ');
   const std::string_view head = "MATLAB 5.0 MAT-file";
@@ -117,7 +117,7 @@ class Mutator {
         case 0:
           edit(lines[row], [&](Lines& fields) { fields[std::min(column, fields.size() - 1)] = special(); });
           break;
-        case 1:  // a channel that stands still, is scaled, or runs away
+        case 1:  // a channel that is constant, scaled, or grows
           each(lines, kNames + 1, column, [v = special()](const std::string&) { return v; });
           break;
         case 2: {
@@ -254,7 +254,7 @@ class Mutator {
   std::mt19937& random_;
 };
 
-/// A command line and how often it is taken; %m model, %r record, %f MATLAB file, %s scenario, %o a name for outputs.
+/// A command line and its weight; %m model, %r record, %f MATLAB file, %s scenario, %o a name for outputs.
 struct Command {
   const char* line;
   unsigned weight;
@@ -278,7 +278,7 @@ constexpr Command kCommands[] = {
 
 class ProgramFuzz : public testing::Test {
  protected:
-  /// A command among all, by weight.
+  /// Chooses a command at random, by weight.
   static std::string choose(Mutator& mutator) {
     unsigned sum = 0;
     for (const Command& command : kCommands) sum += command.weight;
@@ -300,10 +300,10 @@ class ProgramFuzz : public testing::Test {
     return line;
   }
 
-  /// What is wrong with an end of the program; empty: nothing.
+  /// Fault in the way the program ended; empty if there is none.
   static std::string fault_of_end(const ProgramRun& run) {
     if (run.exit_code < 0) return "ended by a signal";
-    if (run.exit_code == 124) return "";  // the time that this test gives it; slowness is measured elsewhere
+    if (run.exit_code == 124) return "";  // time limit of this test; run times are measured elsewhere
     if (run.exit_code > 9) return "undocumented exit code " + std::to_string(run.exit_code);
     for (const char* word : {"ERROR: AddressSanitizer", "runtime error:", "unexpected:", "terminate called"})
       if (run.output.find(word) != std::string::npos) return word;
@@ -311,7 +311,7 @@ class ProgramFuzz : public testing::Test {
     return "";
   }
 
-  /// Outputs that are there are whole: each reads as what it is.
+  /// Existing outputs must be complete: each can be read in its format.
   std::string fault_of_outputs() const {
     for (const auto& entry : fs::directory_iterator(folder.path(""))) {
       const std::string name = entry.path().filename().string(), path = entry.path().string();

@@ -5,7 +5,7 @@
 
 #include "tests/run_program.hpp"
 
-/// A drive with nothing hidden: model.toml, train-jog.csv, train-sweep.csv, validate.csv.
+/// A drive without a hidden effect: model.toml, train-jog.csv, train-sweep.csv, validate.csv.
 inline const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
 
 /// Runs axistool with `arguments` (one shell text). `streams` redirects, for example "2>/dev/null".

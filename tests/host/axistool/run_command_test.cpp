@@ -1,4 +1,4 @@
-// axistool run on a simulated board in a process of its own.
+// axistool run on a simulated board in a separate process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -41,8 +41,8 @@ class RunCommand : public testing::Test {
     return board_.run(command, streams);
   }
 
-  /// Both axes have the same drive, with a design for it. The board has long time-outs, so that a loaded computer is
-  /// not a lost host.
+  /// Sets a design on both axes, which have the same drive. The board has long time-outs, so that a loaded computer
+  /// does not look like a lost host.
   void fit() const {
     ASSERT_EQ(run_axistool("design " + kModel + " -o " + file("x.toml")).exit_code, 0);
     std::ifstream in(file("x.toml"));
@@ -78,8 +78,8 @@ TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
   EXPECT_NEAR(record.x.back(), 0.0, 0.02) << "it ends where it began";
 }
 
-/// The command that the dry run states, against the one that the same program takes on the plant: the model's effort
-/// against the loop's. Both ways, because friction differs by direction.
+/// Compares the command stated by the dry run (from the model) with the one that the same program needs on the plant
+/// (in the loop), in both directions, because friction differs by direction.
 TEST_F(RunCommand, ADryRunSaysTheLargestCommandAndWhere) {
   fit();
   for (const char* to : {"60", "-60"}) {
@@ -123,8 +123,8 @@ TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
   EXPECT_THAT(run("info").output, testing::Not(HasSubstr("enabled")));
 }
 
-/// A circle of 44 s in a separate process, which gets a signal once the axis moves, because on a busy computer the time
-/// of this is unknown. Returns its exit code or, negative, the signal that ended it.
+/// Runs a circle of 44 s in a separate process and sends it a signal after the axis has begun to move (on a busy
+/// computer this time is unknown). Returns the exit code or, negative, the signal that ended it.
 int signalled_on_the_circle(const SimulatedBoardProcess& board, const std::string& program, const std::string& more,
                             int signal) {
   Child process = board.start("run " + program + more);
@@ -144,7 +144,7 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
 }
 
-/// A program on its own terminal, with typed keys.
+/// Runs a program on a pseudo-terminal and types keys.
 class OnTerminal {
  public:
   explicit OnTerminal(const std::string& command) {
@@ -179,7 +179,7 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
   const std::string circle = written("circle.ngc", "F3000 G3 X0 Y0 I35 J0\nM2\n");  // 220 mm at 50 mm/s
-  /// As a share of the plan's.
+  /// Duration relative to the plan.
   const auto duration = [&](const std::string& keys) {
     OnTerminal terminal("\"" AXISTOOL_PROGRAM "\" run" + board_.device() + circle + " --yes --json " +
                         file("run.json") + " --capture " + file("run.csv"));
@@ -197,7 +197,7 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
   EXPECT_LT(slowed, 2.05);
 }
 
-/// The path does not move during a feed hold, but the time of the hold counts.
+/// The path stops during a feed hold, but the time of the hold counts.
 TEST_F(RunCommand, TheClockGoesOnWhileTheFeedIsHeld) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
@@ -215,7 +215,7 @@ TEST_F(RunCommand, TheClockGoesOnWhileTheFeedIsHeld) {
   EXPECT_GT(told["clock_s"], told["duration_s"].get<double>() + 1.0);
 }
 
-/// Walls on either side in x; y has none.
+/// A machine with walls on both sides in x and none in y.
 class ProbingCommand : public RunCommand {
  protected:
   ProbingCommand() : RunCommand({"--probe", "x=20.0007", "--probe", "x=-20.0007"}) {}
@@ -229,7 +229,7 @@ class ProbingCommand : public RunCommand {
     EXPECT_EQ(done.exit_code, exit_code) << program << done.output;
     return nlohmann::json::parse(done.output, nullptr, false);
   }
-  /// The position of the count that the encoder shows at the wall.
+  /// Position of the encoder count at the wall.
   static double at_count(double mm) { return std::floor(mm / kCount_mm) * kCount_mm; }
 
   static constexpr double kCount_mm = 10.0 / 4096.0;
@@ -259,7 +259,7 @@ TEST_F(ProbingCommand, MeasuresWhereItTouchesAndGoesOnFromThere) {
   EXPECT_THAT(text.output, HasSubstr("line 2: contact at x 20.0000 mm, y"));
 }
 
-/// The parts of a program, and the rests between them, are one record.
+/// The parts of a program and the rests between them give one record.
 TEST_F(ProbingCommand, IsCapturedFromBeginningToEnd) {
   fit_probe();
   const std::string program =
@@ -268,7 +268,7 @@ TEST_F(ProbingCommand, IsCapturedFromBeginningToEnd) {
   ASSERT_EQ(done.exit_code, 0) << done.output;
   const auto told = nlohmann::json::parse(done.output);
   const host::Record record = host::read_record(file("p.csv"));
-  // Past each edge by the stopping distance.
+  // Beyond each edge by the stopping distance.
   const double right_mm = told["probes"][0]["position_mm"]["x"], left_mm = told["probes"][2]["position_mm"]["x"];
   const auto [least, most] = std::minmax_element(record.x.begin(), record.x.end());
   EXPECT_GT(*most, right_mm);

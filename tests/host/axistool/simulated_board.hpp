@@ -1,4 +1,4 @@
-// axistool sim in a separate process, as in a user's other window.
+// axistool sim in a separate process, as in another terminal window.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 class SimulatedBoardProcess {
  public:
-  /// `folder`, with its slash, holds socket and flash. `options`: more words for the command line.
+  /// `folder`, with trailing slash: for socket and flash file. `options`: further command-line arguments.
   explicit SimulatedBoardProcess(const std::string& folder, const std::vector<std::string>& options = {})
       : socket_(folder + "board.socket"), process_(words(folder, options)) {
     wait_until([this] { return std::filesystem::exists(socket_); });
@@ -26,7 +26,7 @@ class SimulatedBoardProcess {
   SimulatedBoardProcess(const SimulatedBoardProcess&) = delete;
   SimulatedBoardProcess& operator=(const SimulatedBoardProcess&) = delete;
 
-  /// SIGTERM: an orderly end. SIGKILL: the plug is pulled.
+  /// SIGTERM: an orderly end. SIGKILL: as if the cable were unplugged.
   void end(int signal) { process_.end(signal); }
 
   std::string address() const { return "socket:" + socket_; }
@@ -34,11 +34,11 @@ class SimulatedBoardProcess {
   ProgramRun run(const std::string& command, const std::string& streams = "2>&1") const {
     return run_axistool(meant(command), streams);
   }
-  /// The same in the background; `output` takes its standard output.
+  /// The same in the background; `output`: file for its standard output.
   Child start(const std::string& command, const std::string& output = "/dev/null") const {
     return Child({"/bin/sh", "-c", "exec \"" AXISTOOL_PROGRAM "\" " + meant(command) + " 2>/dev/null"}, output);
   }
-  /// Whether an axis is seen to move.
+  /// Whether the board reports that an axis moves.
   bool moves() const {
     constexpr double kSlow_mm_s = 1.0;
     const auto seen = nlohmann::json::parse(run("info --json -", "2>/dev/null").output, nullptr, false);

@@ -1,4 +1,4 @@
-// A scale on the table of the simulated board, from the board's counts to the effects found in them.
+// A scale on the table of the simulated board: from the board's counts to the effects found with them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr double kGap_mm = 0.04, kStep_mm = 0.0005;
 
 class TableScale : public testing::Test {
  protected:
-  /// The drive of the test case with further lines; `lines` are TOML.
+  /// The drive of the test case with additional TOML lines.
   std::string drive(const char* name, const std::string& lines) const {
     std::stringstream text;
     text << std::ifstream(kCase + "/model.toml").rdbuf() << lines;
@@ -37,8 +37,8 @@ class TableScale : public testing::Test {
                                                          "damping_ratio = 0.1\nload_friction = 0.5\n");
 };
 
-/// Catches counts with another step than the scale's, a reading of another instant than the encoder's, and a scale that
-/// the simulated board reads from the motor.
+/// Catches a wrong resolution of the scale, a reading at another time than the encoder's, and a scale that reads the
+/// motor instead of the table.
 TEST_F(TableScale, OfTheBoardMeasuresTheGap) {
   const SimulatedBoardProcess board(folder_.path(""), {"--x", machine_});
   const std::string params = folder_.path("params.toml"), record = folder_.path("table.csv");

@@ -1,4 +1,4 @@
-// axistool capture with a trigger that the board looks for.
+// axistool capture with a trigger that the board detects.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,12 +20,12 @@ class BoardTrigger : public testing::Test {
   std::string file(const char* name) const { return folder_.path(name); }
   ProgramRun run(const std::string& command) const { return board_.run(command, "2>/dev/null"); }
 
-  /// The command waits for its trigger while the axis jogs.
+  /// Runs the command, which waits for its trigger, while the axis jogs.
   nlohmann::json capture_while_jogging(const std::string& options) const {
     auto capture =
         std::async(std::launch::async, [&] { return run("capture -o " + file("c.csv") + " --json - " + options); });
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    do {  // once more where the capture came late
+    do {  // again if the capture started too late
       EXPECT_EQ(run("jog x 30 --for 0.5").exit_code, 0);
       if (capture.wait_for(std::chrono::seconds(2)) == std::future_status::ready) break;
       EXPECT_EQ(run("jog x -30 --for 0.5").exit_code, 0);

@@ -1,4 +1,4 @@
-// axistool update, as a user runs it on the simulated board: the new image, the old one's return, refusals.
+// axistool update, as a user runs it on the simulated board: the new image, the return of the old one, refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

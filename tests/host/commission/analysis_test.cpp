@@ -8,8 +8,8 @@
 
 namespace {
 
-/// Catches records that begin at rest: the initial state of a spring or a gap is unknown, so even a machine's true
-/// values leave several noise floors.
+/// Catches records that begin at rest: the initial state of a spring or a gap is unknown, so even the true model has an
+/// error of several noise floors.
 TEST(RecordsOfACommissioning, BeginInMotionForADiagnosis) {
   const TemporaryFolder folder;
   OwnBoard board;

@@ -1,4 +1,4 @@
-// Failures during a commissioning: the axis stands, the folder can be used, and the message gives the remedy.
+// Failures during a commissioning: the axis stops, the folder remains usable, and the message gives the remedy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -24,7 +24,7 @@ void expect_usable(const std::string& name) {
   EXPECT_EQ(folder.document().at("format"), "axis-commission/1");
 }
 
-/// An axis that its controller holds at rest may stay enabled when the host ends.
+/// An axis that is held at rest by its controller may stay enabled when the host ends.
 void expect_standing(OwnBoard& board) {
   board.link->wait(std::chrono::seconds(2));
   const double there = board.machine->position();
@@ -88,13 +88,13 @@ TEST(CommissioningGoesWrong, WhereTheUserInterruptsAndCanGoOn) {
   }
 }
 
-/// Number of failure times: this many, or AXIS_COMMISSION_TRIALS.
+/// Number of failure times: `usual`, or AXIS_COMMISSION_TRIALS.
 int trials(int usual) {
   const char* wanted = std::getenv("AXIS_COMMISSION_TRIALS");
   return wanted != nullptr ? std::atoi(wanted) : usual;
 }
 
-/// The program ends, or its cable is unplugged: the board stops without a request.
+/// The program ends or its cable is unplugged: the board must stop without a request.
 TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   std::mt19937 random(11);
   for (int trial = 0; trial < trials(kInstrumented ? 2 : 20); ++trial) {
@@ -119,8 +119,8 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   }
 }
 
-/// No handler of the program runs: files that are not yet in the folder are missing, and existing ones are complete. A
-/// killed commissioning can be continued on a board that was switched on again.
+/// After a kill no handler runs: unfinished files are missing, existing ones are complete, and the commissioning can
+/// continue on a restarted board.
 TEST(CommissioningGoesWrong, WhereTheProgramIsKilledAtAnyMoment) {
   std::mt19937 random(17);
   for (int trial = 0; trial < trials(kInstrumented ? 2 : 10); ++trial) {

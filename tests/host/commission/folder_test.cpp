@@ -23,7 +23,7 @@ TEST(CommissionFolder, NamesNoPageBeforeItsOwnIsWritten) {
   EXPECT_EQ(host::CommissionFolder(first).document().at("page"), first + "/page.html");
 }
 
-/// Two commissionings at once would mix their records.
+/// Two simultaneous commissionings would mix their records.
 TEST(FolderLock, IsOneCommissioningsAtATime) {
   const TemporaryFolder folder;
   {

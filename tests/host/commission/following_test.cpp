@@ -1,4 +1,4 @@
-// Following errors by hand.
+// Following errors of hand-made records.
 #include "host/commission/following.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Stands for `rest` rows, then moves by 1 mm a row, `behind` mm behind its reference.
+/// At rest for `rest` rows, then moves by 1 mm per row, `behind` mm behind its reference.
 host::Record moving(std::size_t rest, const std::vector<double>& behind) {
   host::Record record;
   record.kind = sim::DriveKind::rotary;
@@ -30,7 +30,7 @@ TEST(FollowingError, IsOfTheMotionAlone) {
   EXPECT_NEAR(error.rms_um, std::sqrt(9.0 / 4.0), 1e-9);
 }
 
-/// Catches floors that compare rows by their numbers although one record began earlier.
+/// Catches a comparison by row number of records that begin at different times.
 TEST(FollowingFloor, ComparesTheSameMotionWhereverItBegins) {
   const host::Record once = moving(10, {0.004, 0.001, 0.002, 0.001}), again = moving(25, {0.004, 0.001, 0.002, 0.001});
   EXPECT_NEAR(host::following_floor_um(once, again), 0.0, 1e-9);

@@ -1,4 +1,4 @@
-// Whole commissionings, through the board's protocol, of machines whose physics share no code with the simulator.
+// Complete commissionings, over the board's protocol, of machines with physics independent of the simulator.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   const auto [code, words] = commission(board, folder.path("x"), "look", "page", {}, options);
   EXPECT_EQ(code, host::ExitCode::done) << words;
   if (code != host::ExitCode::done) return {};
-  // Its steps state the same figures for the initial model, as the commands do.
+  // The steps state the same figures for the initial model as the commands.
   const json diagnosed = read(folder.path("x/diagnosis.json"));
   EXPECT_EQ(read(folder.path("x/comparison.json"))["error"], diagnosed["error"]["given"]["validate"]);
   Outcome outcome;
@@ -51,7 +51,7 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   return outcome;
 }
 
-/// The page's sentences, without markup and scripts.
+/// The sentences of the page, without markup and scripts.
 std::vector<std::string> sentences_of(std::string page) {
   page = std::regex_replace(page.substr(0, page.find("<script")), std::regex("<style[^]*?</style>|<[^>]*>"), ". ");
   std::vector<std::string> sentences;
@@ -61,8 +61,8 @@ std::vector<std::string> sentences_of(std::string page) {
   return sentences;
 }
 
-/// Catches positions that are not counted from home (then the compensation has another phase, or does not act), and a
-/// loop with more bandwidth than the machine allows.
+/// Catches positions that are not counted from home, which makes the compensation ineffective, and a loop with more
+/// bandwidth than the machine allows.
 TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board;
@@ -84,7 +84,7 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_EQ(twice, sentences.end()) << (twice == sentences.end() ? "" : *twice);
 }
 
-/// Catches effects that are named although there are none.
+/// Catches effects that are found although there are none.
 TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board;
@@ -93,7 +93,8 @@ TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
   EXPECT_THAT(found.effects(), testing::IsEmpty());
 }
 
-/// Catches a weight that is taken for friction, and a position-dependent compensation that is promised without homing.
+/// Catches a weight that is identified as friction, and a position-dependent compensation that is offered without
+/// homing.
 TEST(CommissionedMachine, IsToldThatItCarriesAWeight) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board(hal::pc::AxisWiring{});

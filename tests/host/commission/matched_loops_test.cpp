@@ -1,5 +1,5 @@
-// The common loop at the end of commissioning a machine of two unlike axes: what it writes, what the board holds and
-// how the axes then follow; and what the board holds after a refusal.
+// The common loop at the end of commissioning two unequal axes: its files, the board's parameters and the following
+// errors; and the board's parameters after a refusal.
 #include "host/commission/matched_loops.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class MatchedLoops : public testing::Test {
   host::BoardClient board_ = board();
 };
 
-/// Catches axes that get another's gains or loop, and figures of another motion.
+/// Catches axes that get the gains or the loop of another axis, and following errors of another motion.
 TEST_F(MatchedLoops, AreOnTheBoardAndInTheFolders) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const nlohmann::json found = host::match_loops(board_, axes_, {});
@@ -71,7 +71,7 @@ TEST_F(MatchedLoops, AreOnTheBoardAndInTheFolders) {
   EXPECT_GT(values.axis(1).get<"feedback.k1">(), 1.7F * values.axis(0).get<"feedback.k1">());
 }
 
-/// Catches a machine that is left with one axis matched and the other not.
+/// Catches a machine with only one of its axes matched.
 TEST_F(MatchedLoops, ARefusalLeavesTheBoardAsItWas) {
   const firmware::ParameterValues before = board_.read_values();
   host::CommissionTalk talk;

@@ -1,4 +1,4 @@
-// A machine that shares no code with the simulator, behind the simulated board and its protocol.
+// A machine independent of the simulator, connected to the simulated board and its protocol.
 #pragma once
 
 #include <signal.h>
@@ -18,9 +18,9 @@
 class OwnMachine : public sim::ForeignMotion {
  public:
   bool counts_backward = false;
-  double cogging_Nm = 0.0;  ///< every 4 mm
+  double cogging_Nm = 0.0;  ///< amplitude, with a period of 4 mm
   double weight_Nm = 0.0;
-  double seizes_at_s = HUGE_VAL;  ///< time at which its bearing seizes, in the machine's time
+  double seizes_at_s = HUGE_VAL;  ///< machine time at which its bearing seizes
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
@@ -55,7 +55,7 @@ class OwnMachine : public sim::ForeignMotion {
   std::normal_distribution<double> normal_;
 };
 
-/// The data sheet of it, 5 % off.
+/// Its data sheet, with an error of 5 %.
 inline sim::DriveDescription own_sheet() {
   sim::DataSheet data;
   data.amplifier_gain_A_per_V = 6.3;
@@ -67,14 +67,14 @@ inline sim::DriveDescription own_sheet() {
   return {"own", data, {}};
 }
 
-/// A board that outlives its program; its link may break after a number of reports.
+/// A board that remains when its program ends; its link may break after a number of reports.
 struct OwnBoard {
   std::shared_ptr<OwnMachine> machine = std::make_shared<OwnMachine>();
   std::shared_ptr<host::SimulatedLink> link;
-  long reports_left = -1;  ///< below 0: it does not break
-  bool dies_then = false;  ///< the whole program, at once
+  long reports_left = -1;  ///< negative: the link does not break
+  bool dies_then = false;  ///< then kills the whole program
 
-  /// With a home switch, for which own_options() search.
+  /// Wiring with the home switch that own_options() use.
   static hal::pc::AxisWiring usual_wiring() {
     hal::pc::AxisWiring wiring;
     wiring.home = 11.3;
@@ -119,7 +119,7 @@ inline host::CommissionOptions own_options() {
   return options;
 }
 
-/// Runs steps by name. Returns the failure's code and words, or done.
+/// Runs steps by name. Returns exit code and message of the failure, or done.
 inline std::pair<host::ExitCode, std::string> commission(OwnBoard& board, const std::string& folder_name,
                                                          const char* from, const char* to,
                                                          const host::CommissionTalk& talk = {},

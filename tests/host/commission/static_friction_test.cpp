@@ -20,7 +20,7 @@ sim::DriveDescription with_static(double positive, std::array<double, 2> interva
   return model;
 }
 
-/// Catches a fit of a cogging axis with a distorted friction curve, from which a weight was found that does not exist.
+/// Catches a distorted friction curve of a cogging axis, which leads to a nonexistent weight.
 TEST(StaticFriction, IsWhatBrokeTheAxisAwayWhereTheJogsLeaveItOpen) {
   sim::DriveDescription model = with_static(79.0, {-237.0, 395.0});
   EXPECT_TRUE(host::level_static_friction(model, 0.8, 0.9));

@@ -1,4 +1,4 @@
-// The distance that an axis needs without current, compared with the free distance.
+// Stopping distances without current, compared with the free distance.
 #include "host/commission/stopping_room.hpp"
 
 #include <gmock/gmock.h>

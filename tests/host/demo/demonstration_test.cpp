@@ -1,4 +1,4 @@
-// The demonstration's figures, against values typed here from the paper and the independent plant's own truth.
+// The demonstration's results against values copied here from the paper and from the independent plant's truth.
 #include "host/demo/demonstration.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The contour error of a path that was run, from rows made here.
+// Contour error of a completed path, from rows made here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kCount_mm = 0.00244140625, kRow_s = 0.001, kFrom_s = 2.0, kTo_s = 6.0;
 
-/// A circle of 11 s at 20 mm/s as encoders would see it, without the rows in between.
+/// A circle of 11 s at 20 mm/s, as captured by encoders, with missing rows.
 TEST(ContourError, RowsThatWereLostAreNoError) {
   host::PathMove move;
   move.curve = host::PathCurve::arc({0, 0, 0}, {35, 0, 0}, 2 * std::numbers::pi, 0);
@@ -39,8 +39,7 @@ TEST(ContourError, RowsThatWereLostAreNoError) {
   for (const double error_um : contour_error_um(capture, path, scale)) ASSERT_LT(error_um, 1e3 * kCount_mm);
 }
 
-/// References as a board rounds them, below the plan: at the turn the nearest point of the plan is always one before
-/// it.
+/// References rounded down as on a board: at the reversal the nearest point of the plan is always one before it.
 TEST(ContourError, ALineThereAndBackEndsWhereItBegan) {
   host::PathMove there, back;
   there.curve = host::PathCurve::line({0, 0, 0}, {60, 60, 0});

@@ -1,4 +1,4 @@
-// The lines of the fault log: of axes, and of programs that a watchdog or a fault of the processor ended.
+// Lines of the fault log: faults of axes, and programs that ended by the watchdog or a processor fault.
 #include "host/device/fault_log.hpp"
 
 #include <gtest/gtest.h>

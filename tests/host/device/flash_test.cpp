@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr const char* kListing =
     "Found DFU: [0483:df11] ver=2200, alt=0, name=\"@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg\"";
 
-/// A board computer that records all actions, with the time of the pauses.
+/// A board computer that records all actions and the time of the pauses.
 struct Bench {
   struct Event {
     std::string what;
@@ -27,10 +27,10 @@ struct Bench {
   std::chrono::milliseconds now{0};
   host::CommandResult list{0, kListing}, write{0, ""};
   bool equal = true;
-  /// Of the chip, as 0x1FFFC000 shows them: user byte, read protection, their complements.
+  /// Option bytes of the chip at 0x1FFFC000: user byte, read protection, their complements.
   std::string options{"\xE3\xAA\x1C\x55\0\0\0\0\xFF\x0F\0\xF0\0\0\0\0", 16};
   std::string sent;        ///< option bytes that the host wrote
-  bool takes_them = true;  ///< the chip, when it resets
+  bool takes_them = true;  ///< whether the chip accepts them at its reset
   int status_of_options = 0;
 
   host::FlashActions actions() {
@@ -87,7 +87,7 @@ TEST(Flash, EdgesComeInOrderWithTheirPauses) {
   EXPECT_GE(bench.events[9].at - bench.events[8].at, 10ms) << "reset pulse";
 }
 
-/// Catches a level written into the wrong bits, one that is written again and again, and other bits that change.
+/// Catches a level in the wrong bits, repeated writing, and changes of other bits.
 TEST(Flash, SetsTheBrownOutLevelOnceBeforeTheImage) {
   for (const int status : {0, 74}) {  // dfu-util may lose the bootloader, which resets
     Bench bench;
@@ -142,7 +142,7 @@ TEST(Flash, SaysSoWhereTheChipDoesNotTakeTheLevel) {
   EXPECT_THROW(host::run_flash(with_gpio(), bench.actions()), host::Failure) << "an empty upload";
 }
 
-/// In openocd's script the protection is checked first, and the image is written last.
+/// openocd's script checks the protection first and writes the image last.
 TEST(Flash, GivesTheProbeTheSameRule) {
   host::FlashRequest request;
   request.way = host::FlashWay::probe;

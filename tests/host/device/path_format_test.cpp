@@ -1,4 +1,4 @@
-// A firmware whose format of path nodes differs from axistool's is refused before an axis moves.
+// A firmware with another format of path nodes than axistool's is refused before an axis moves.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Answers open_path as the firmware did before nodes had a format: 32 bits of room, and nothing beside them.
+/// Answers open_path like firmware without a node format: only 32 bits of room.
 class OlderBoard : public host::ReportLink {
  public:
   void send(const hal::HidReport& report) override {
@@ -37,7 +37,7 @@ class OlderBoard : public host::ReportLink {
   std::deque<hal::HidReport> replies_;
 };
 
-/// Catches a program that assumes that every board that opens a path can read its nodes.
+/// Catches a program that assumes that every board with paths can read its nodes.
 TEST(PathNodeFormat, ABoardThatReadsNodesAnotherWayIsRefusedByName) {
   host::BoardClient board(std::make_unique<OlderBoard>());
   host::PathScale scale;

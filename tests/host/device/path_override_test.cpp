@@ -1,4 +1,4 @@
-// Overrides by keys: steps, bounds, feeds and rapids apart.
+// Overrides by keys: steps, bounds, separate values for feeds and rapids.
 #include "host/device/path_override.hpp"
 
 #include <gtest/gtest.h>

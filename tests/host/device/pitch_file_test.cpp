@@ -1,4 +1,4 @@
-// The file with the measured errors of a screw: its contents, and messages about a bad one.
+// Files with the measured errors of a screw: their contents, and messages about bad files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

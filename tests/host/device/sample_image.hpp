@@ -23,7 +23,7 @@ inline std::string image_text(const char* board) {
   return text;
 }
 
-/// The same behind boot code, as `axistool flash` takes it.
+/// The same after boot code, for `axistool flash`.
 inline std::string flash_text(const char* board) {
   return std::string(firmware::kBootCodeSize, 'b') + image_text(board);
 }

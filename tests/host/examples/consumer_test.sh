@@ -1,5 +1,5 @@
 #!/bin/bash
-# consumer_test.sh: the installed library serves a project outside the tree, and its figures are the program's.
+# consumer_test.sh: a project outside the tree uses the installed library and gets the same results as the program.
 set -euo pipefail
 project=$(cd "$(dirname "$0")/../../.." && pwd)
 folder=$(mktemp -d)

@@ -1,5 +1,5 @@
 #!/bin/bash
-# examples_test.sh: every example runs, for the shell and for Python, and both print the same figure.
+# examples_test.sh: every example runs in the shell and in Python, and both print the same result.
 set -euo pipefail
 /usr/bin/python3 -c 'import numpy' 2> /dev/null || { echo "python3-numpy is missing" >&2; exit 77; }
 project=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -16,7 +16,7 @@ for shell in "$project"/host/examples/*.sh; do
     echo "$python prints: $other" >&2
     exit 1
   fi
-  # README's table names each example with the first digits of its figure, and with its page.
+  # README's table lists each example with the first digits of its result.
   row=$(grep "^| $(basename "$shell" .sh) " "$project/host/examples/README.md") || { echo "README.md does not name it" >&2; exit 1; }
   figure=$(sed 's/.*`\([^`]*\)` |$/\1/' <<< "$row")
   [[ $one == "${figure%…}"* ]] || { echo "README.md says: $figure" >&2; exit 1; }

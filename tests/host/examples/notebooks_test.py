@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The example notebooks run from top to bottom: in a kernel where nbclient and ipykernel are installed, else cell by cell
-in this process. They hold no stored output, and every result at the end of a cell is a table."""
+"""The example notebooks run from top to bottom: in a kernel if nbclient and ipykernel are installed, else cell by cell
+in this process. They contain no stored output, and every result at the end of a cell is a table."""
 
 import ast
 import json
@@ -26,7 +26,7 @@ def code_cells(notebook: dict) -> list[str]:
 
 
 def run_here(cells: list[str]) -> dict:
-    """Runs cells without magics as a kernel does, and checks what the last expression of each shows."""
+    """Runs cells without magics as a kernel does, and checks the displayed value of the last expression of each."""
     names: dict = {}
     for number, cell in enumerate(cells):
         body = ast.parse(cell).body

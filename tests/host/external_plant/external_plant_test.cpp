@@ -1,4 +1,4 @@
-// Programs as the machine, including those that misbehave.
+// External programs as the machine, including faulty ones.
 #include "host/external_plant/external_plant.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ void expect_end(Work work, ExitCode code, const std::string& words) {
   }
 }
 
-/// Catches an exchange before all axes have set their voltage, and an exchange for each axis.
+/// Catches an exchange before all axes have set their voltage, and a separate exchange for each axis.
 TEST(AnExternalPlant, IsAskedOnceAPeriodWithTheVoltsOfAllAxes) {
   const auto plant = start("read hello; echo ready; while read k a b; do echo $k $a 1 $b -; done", 2);
   const auto x = ExternalPlant::axis(plant, 0), y = ExternalPlant::axis(plant, 1);

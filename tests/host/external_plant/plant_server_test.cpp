@@ -1,4 +1,4 @@
-// The simulator's drives behind axis-plant/1, against physics worked out by hand.
+// Simulated drives over axis-plant/1, against hand calculations.
 #include "host/external_plant/plant_server.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// 1 V is 1 Nm; 0.01 kg m^2 without friction; a count each 0.5 mm.
+/// 1 Nm per V; 0.01 kg m^2 without friction; one count per 0.5 mm.
 sim::DriveDescription drive() {
   return host::parse_model(
       "format = \"axis-model/1\"\nname = \"x\"\n[drive]\nkind = \"rotary\"\namplifier_gain_A_per_V = 2.0\n"
@@ -29,8 +29,8 @@ std::string served(const std::string& input, std::size_t axes = 1) {
   return out.str();
 }
 
-/// 1.1 V for 0.1 s: 110 rad/s^2 t^2 / 2 = 0.55 rad = 1.1 mm, at 11 rad/s; switched off it runs on to 3.3 mm. The
-/// counter shows the edge below.
+/// 1.1 V for 0.1 s: 110 rad/s^2 t^2 / 2 = 0.55 rad = 1.1 mm, at 11 rad/s; disabled, it coasts to 3.3 mm. The counter
+/// rounds down.
 TEST(AServedPlant, MovesByTheVoltsThatItIsTold) {
   EXPECT_EQ(served("axis-plant/1 2 0.1\n0 1.1 -1.1\n1 off off\n", 2), "ready\n0 1 - -1.5 -\n1 3 - -3.5 -\n");
 }

@@ -1,4 +1,4 @@
-// G-code programs against geometry worked out by hand.
+// G-code programs against geometry calculated by hand.
 #include "host/gcode/program.hpp"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ std::string refusal(const std::string& text, std::size_t axes = 2) {
 class Program : public testing::TestWithParam<std::filesystem::path> {};
 INSTANTIATE_TEST_SUITE_P(Good, Program, testing::ValuesIn(programs(false)), name_of);
 
-/// Catches an arc on the wrong side or the wrong way round, a forgotten unit, and steps taken as positions.
+/// Catches an arc on the wrong side or in the wrong direction, an ignored unit, and increments read as positions.
 TEST_P(Program, EndsWhereGeometrySaysAndIsAsLong) {
   const std::string text = text_of(GetParam());
   std::istringstream header(text);
@@ -143,7 +143,7 @@ TEST(Gcode, HasFourKindsOfProbingMoves) {
   }
 }
 
-/// After a probe's contact the program continues: absolute positions stay, increments count from the contact.
+/// After a probe's contact the program continues: absolute positions are unchanged, increments count from the contact.
 TEST(Gcode, GoesOnFromWhereAProbeEnded) {
   host::GcodeMachine machine;
   machine.probed = {host::PathPoint(4.25, 0.0, 0.0)};
@@ -173,7 +173,7 @@ TEST(Gcode, SaysWhetherItNeedsToKnowWhereItIs) {
   EXPECT_TRUE(read("G91 G28").is_absolute);
 }
 
-/// Catches a plan that takes gigabytes for two lines.
+/// Catches a plan that needs gigabytes for two lines.
 TEST(BoundedProgram, LastsAndHoldsNoMoreThanAMachineDoes) {
   EXPECT_THAT(refusal("G21 G91\nF1\nG1 X100000\nM2\n"), HasSubstr("part.ngc:3: the program lasts longer than 10 h"));
   EXPECT_THAT(refusal("G4 P20000\nG4 P20000\n"), HasSubstr("part.ngc:2: the program lasts longer than 10 h"));

@@ -1,4 +1,4 @@
-// Section 4 of the paper: the circle, without and with friction feed-forward, and with on-line cancellation.
+// Section 4 of the paper: the circle without and with friction feed-forward, and with on-line cancellation.
 #include "host/hil/contouring.hpp"
 
 #include <gtest/gtest.h>
@@ -81,13 +81,13 @@ TEST(Path, ACircleIsFollowedToItsEndWithinTheLimits) {
   }
   EXPECT_NEAR(position[0], 0.0, 1e-6);
   EXPECT_NEAR(position[1], 0.0, 1e-6);
-  EXPECT_NEAR(fastest, 170.0, 0.1);  // a whole number of samples, and chords in place of arcs
-  // Length over feed, and the time that speeding up and slowing down add: v/a + a/j.
+  EXPECT_NEAR(fastest, 170.0, 0.1);  // due to a whole number of samples, and chords instead of arcs
+  // Length over feed, plus the time for acceleration and deceleration: v/a + a/j.
   const double duration_s = 2.0 * std::numbers::pi * 35.0 / 170.0 + 170.0 / 2000.0 + 2000.0 / 50'000.0;
   EXPECT_NEAR(static_cast<double>(steps.size()) * 1e-3, duration_s, 0.003);
 }
 
-/// 800,000 counts are 2^67 increments: positions as such do not fit.
+/// 800,000 counts are 2^67 increments, so absolute positions do not fit 64 bits.
 TEST(Path, AWideCircleIsFollowedToItsEnd) {
   const double count_mm = 10.0 / 4096.0;
   const auto steps = host::follow_path(Path::circle(1000.0), {}, 1e-3, {count_mm, count_mm});

@@ -80,8 +80,8 @@ host::TrialInjection any_value(Random& random, const host::InjectionInfo& info) 
   return what;
 }
 
-/// Both together are undetectable: the second reversal cancels the first and no tachometer shows it; or counts are lost
-/// and gained.
+/// Pairs that are undetectable together: the second reversal cancels the first and no tachometer shows it, or counts
+/// are lost and gained.
 bool cancel_each_other(const FaultTrial& trial) {
   const bool both_count = trial.first.injection->kind == "counts_lost" && trial.second.injection->kind == "counts_lost";
   if (both_count && trial.first.axis == trial.second.axis && trial.delay == 0 &&
@@ -100,8 +100,8 @@ bool needs(const FaultTrial& trial, Needs what) {
          (trial.second.injection != nullptr && trial.second.injection->needs == what);
 }
 
-/// Without a tachometer or brake, a dead encoder hides the effect of a stuck converter until the loop closes. A contact
-/// that cannot close hides an amplifier that drives by itself.
+/// Without a tachometer or brake, a dead encoder hides the effect of a stuck converter until the loop closes. A ready
+/// contact that cannot close hides an amplifier that drives by itself.
 bool is_blind(const FaultTrial& trial) {
   if (trial.second.injection == nullptr || trial.first.axis != trial.second.axis) return false;
   const auto are = [&](std::string_view one, std::string_view other) {
@@ -137,7 +137,7 @@ void set_up(FaultTrial& trial, Random& random) {
   trial.motion = static_cast<TrialMotion>(any_of(random, 0, 7));
   set_up_start(trial, random);
   trial.acceleration_mm_s2 = trial.motion == TrialMotion::circle || either(random) ? 2000.0 : 200.0;
-  // Before its first two samples a board has nothing to compare with.
+  // A board needs two samples before it can compare.
   const int latest = trial.acceleration_mm_s2 < 1000.0 ? 1500 : 700;
   trial.sample = any_of(random, 2, trial.motion == TrialMotion::self_test ? 50 : latest);
   if (trial.motion == TrialMotion::starting) {
@@ -146,7 +146,7 @@ void set_up(FaultTrial& trial, Random& random) {
     trial.sample = any_of(random, 0, is_open ? closes - 20 : closes + 2 * host::kTrialBrake_ms);
   }
   if (trial.motion == TrialMotion::stopping && either(random)) trial.since_disable = any_of(random, 0, latest);
-  // A tachometer that fails is within what the monitors allow while the drive crawls.
+  // While the drive moves very slowly, a failing tachometer stays within the monitors' thresholds.
   const bool crawls =
       !is_of_tachometer(trial.first) && (trial.second.injection == nullptr || !is_of_tachometer(trial.second));
   trial.speed_mm_s = any_of(random, crawls ? 2 : 40, 250) * (either(random) ? 1.0 : -1.0);
@@ -183,15 +183,15 @@ TEST(AnyFault, EndsWithBothAxesStandingAndNamesItsCause) {
   worst.print(trials);
 }
 
-/// Every fault before, with and after every other. One trial of each pair and each of the two kinds of axes is run
-/// here; AXIS_FAULT_TRIALS asks for more (`make soak`).
+/// Every fault before, with and after every other. Runs one trial for each pair and each of the two kinds of axes;
+/// AXIS_FAULT_TRIALS sets a larger number (`make soak`).
 TEST(AnyTwoFaults, EndWithBothAxesStandingAndTheFirstCauseNamed) {
   Worst worst;
   const int wanted = trials_asked_for(1000 / kShort);
   const auto all = host::injections();
   int trials = 0;
   for (int number = 0; trials < wanted; ++number) {
-    // Pairs in an order that a shorter run samples evenly: a step that has no divisor with the number of pairs.
+    // Visits the pairs in steps that are coprime to their number, so that a shorter run samples them evenly.
     const std::size_t pairs = all.size() * all.size();
     const std::size_t pair = static_cast<std::size_t>(number) * 101 % pairs;
     Random random(static_cast<std::uint64_t>(number) + 1'000'000);
@@ -214,7 +214,7 @@ TEST(AnyTwoFaults, EndWithBothAxesStandingAndTheFirstCauseNamed) {
 }
 
 /// Every pair with its first fault in every sample of enabling, and of a stop from a jog, the second 0 to 60 samples
-/// later. A shorter run takes them evenly; AXIS_FAULT_MOMENTS asks for a number (`make soak`: all).
+/// later. A shorter run samples them evenly; AXIS_FAULT_MOMENTS sets their number (`make soak`: all).
 TEST(AnyTwoFaults, AtEveryMomentOfEnablingAndDisablingDoTheSame) {
   constexpr int kEnabling = 170, kDisabling = 260;  // ready after 60 ms, brake 50 ms; ramp 165 ms, rest, brake
   const auto all = host::injections();
@@ -223,7 +223,7 @@ TEST(AnyTwoFaults, AtEveryMomentOfEnablingAndDisablingDoTheSame) {
   const int wanted = std::min(asked != nullptr ? std::atoi(asked) : 600 / kShort, pairs * moments);
   Worst worst;
   for (int number = 0; number < wanted; ++number) {
-    // A prime that does not divide their number reaches each once.
+    // Steps by a prime that does not divide their number visit each combination once.
     const auto which = static_cast<int>(std::int64_t{number} * 100'003 % (pairs * moments));
     const auto pair = static_cast<std::size_t>(which / moments);
     Random random(static_cast<std::uint64_t>(which) + 10'000'000);

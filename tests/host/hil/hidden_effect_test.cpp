@@ -22,7 +22,7 @@ TEST(HiddenEffect, IsFoundInTheRecordsThatItSpoiltAndCompensated) {
   host::Scenario circle = host::read_scenario(folder + "hidden-effect.toml");
   const host::ScenarioRun before = host::run_scenario(circle);
   const host::ScenarioRun check = host::run_scenario(host::read_scenario(folder + "hidden-effect-check.toml"));
-  // The paper's machine kept 12 um (section 4) where its model promised 4.
+  // The paper's machine had an error of 12 um (section 4), its simulation 4 um.
   EXPECT_GT(largest_contour_error_um(before), 10.0);
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     const sim::DriveDescription nominal = *host::paper_drive(host::kAxisNames[i]);

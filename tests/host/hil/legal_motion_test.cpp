@@ -1,4 +1,4 @@
-// No monitor reports a fault in the hardest permitted motion, on the worst permitted drives.
+// No monitor reports a fault in the most demanding permitted motion on the worst permitted drives.
 #include <gtest/gtest.h>
 
 #include "host/hil/machine.hpp"

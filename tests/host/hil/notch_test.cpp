@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kModulus = 0.5;
 
-/// Over the board's protocol, with the controller that the design made of the model without a spring.
+/// Response measured over the board's protocol, with the controller designed from the model without a spring.
 host::AxisResponse measured(const sim::DriveDescription& machine, const sim::DriveDescription& model,
                             double bandwidth_Hz) {
   host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{{{machine}}, {}, 3}));
@@ -68,7 +68,8 @@ TEST(Notch, LetsTheBandwidthRiseByAThirdAtTheSameMarginAndTheCircleGainsByIt) {
     plain.axes[i].tuning = {without.design.used.bandwidth_Hz, without.filters};
     notched.axes[i].tuning = {with.design.used.bandwidth_Hz, with.filters};
   }
-  // The largest error is one sample at a reversal, and changes by a tenth with a rounding of the friction curve.
+  // RMS, because the largest error is a single sample at a reversal, which changes by a tenth with the rounding of the
+  // friction curve.
   const double before = host::root_mean_square(host::run_scenario(plain).contour_um),
                after = host::root_mean_square(host::run_scenario(notched).contour_um);
   std::printf("contour error of the circle: %.2f um RMS before, %.2f um after\n", before, after);

@@ -1,6 +1,6 @@
 // Contour errors of machines that differ from their models. Truth: the frequency response of the loop with the changed
-// drive, where neither friction nor noise acts; and the order that the paper states. Catches a change that reaches the
-// controller too, one of the wrong sign, and a controller of the table that lacks its switch.
+// drive, without friction and noise; and the order of controllers in the paper. Catches a change that also reaches the
+// controller, a change with the wrong sign, and a controller without its switch.
 #include "host/hil/robustness.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ double rms(const host::Robustness& found, const std::string& quantity, double ch
   return at(found, quantity, change).by_controller.at(controller).rms_um;
 }
 
-/// Viscous friction alone, fine encoders, quiet tachometers.
+/// Only viscous friction, fine encoders, low-noise tachometers.
 sim::DriveDescription quiet(const char* axis) {
   sim::DriveDescription drive = *host::paper_drive(axis);
   drive.data.encoder_resolution = 1e-4;
@@ -37,7 +37,7 @@ sim::DriveDescription quiet(const char* axis) {
   return drive;
 }
 
-/// Radius of the circle that a loop makes of one of 35 mm at 170 mm/s, less 35 mm: the mean of both axes.
+/// Radius error of a circle of 35 mm at 170 mm/s, by the loop's frequency response: mean of both axes.
 double radius_error_um(const host::RobustnessMachine& machine, double inertia, double delay_s, bool zero_phase) {
   const double f_Hz = 170.0 / (2.0 * std::numbers::pi * 35.0);
   double sum = 0.0;
@@ -69,7 +69,7 @@ TEST(Robustness, WithoutFrictionTheErrorIsThatOfTheFrequencyResponse) {
       const double seen = rms(found, one.quantity, one.change, zero_phase ? kZeroPhase : kFeedback);
       std::printf("%s %+g, %s: response %.2f um, simulated %.2f um RMS\n", one.quantity, one.change,
                   zero_phase ? "ZPETC" : "feedback", expected, seen);
-      // Start and end of the circle are an eighth of its time.
+      // Start and end take an eighth of the circle's time.
       EXPECT_NEAR(seen, expected, 0.15 * expected + 0.3);
     }
 }
@@ -78,12 +78,12 @@ TEST(Robustness, FeedForwardDependsOnTheModelAndFeedbackDoesNot) {
   const host::RobustnessMachine machine = {host::robustness_axis(*host::paper_drive("x"), ""),
                                            host::robustness_axis(*host::paper_drive("y"), "")};
   const host::Robustness found = host::find_robustness(machine, {});
-  // The paper's order, p. 1507: friction feed-forward takes most of the error, where friction is as modelled.
+  // The paper's order, p. 1507: friction feed-forward removes most of the error if friction is as modelled.
   EXPECT_LT(rms(found, "friction", 0.0, kFriction), 0.4 * rms(found, "friction", 0.0, kZeroPhase));
-  // It loses where friction is not.
+  // It performs worse if friction differs.
   EXPECT_GT(rms(found, "friction", 30.0, kFriction), 2.0 * rms(found, "friction", 0.0, kFriction));
   EXPECT_GT(rms(found, "friction", -30.0, kFriction), 2.0 * rms(found, "friction", 0.0, kFriction));
-  // Cancellation takes most of what a wrong friction leaves.
+  // Cancellation removes most of the error due to wrong friction.
   EXPECT_LT(rms(found, "friction", 30.0, kCancellation), 0.6 * rms(found, "friction", 30.0, kFriction));
   for (const host::RobustnessCurve& curve : found.curves)
     for (const host::RobustnessPoint& point : curve.points)

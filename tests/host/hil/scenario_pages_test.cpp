@@ -1,4 +1,4 @@
-// Pages of scenarios: the circle magnified, before and after on one page, an index of many.
+// Pages of scenarios: the magnified circle, before and after on one page, an index of several scenarios.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ host::Scenario scenario_along(const host::Path& path) {
   return scenario;
 }
 
-/// Too far out by 8 um towards +X, too far in by 3 um towards +Y.
+/// Radius too large by 8 um towards +X, too small by 3 um towards +Y.
 host::ScenarioRun run_by_hand() {
   host::ScenarioRun run;
   for (int k = 0; k < 360; ++k) {

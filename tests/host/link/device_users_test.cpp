@@ -1,4 +1,4 @@
-// A busy board: the message names the program that uses it.
+// The message about a busy board names the program that uses it.
 #include "host/link/device_users.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Folder of a simulated board's sockets and parameters: the user's own, with no rights for others.
+// The folder for sockets and parameters of simulated boards belongs to the user, without rights for others.
 #include "host/own_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Effects of which one shows in the torque and another only in the motion, on machines of a plant that shares nothing
-with the simulator (tests/machines/made_machines.cpp): each is named, and nothing else. Of a gap with friction on both
-sides the fit finds how the friction is shared."""
+"""Pairs of effects of which one shows in the torque and the other only in the motion, on machines independent of the
+simulator (tests/machines/made_machines.cpp): diagnose finds both and nothing else. For a gap with friction on both
+sides the fit finds the share of friction on each side."""
 
 import json
 import os
@@ -14,14 +14,14 @@ from pathlib import Path
 AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
 # alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset
-# beside friction that no motion tells from a constant torque
+# with friction that no motion separates from a constant torque
 CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1))
 # a gap with friction on either side beside friction's memory: the gap alone is added
 SHARED_FRICTION = (601, 2, 9)
 
 
 def made(seed: int, effects: int, number: int, folder: str) -> "tuple[Path, list, dict]":
-    """The folder of one case, its records as arguments of a command, and what is true of it."""
+    """The folder of one case, its records as arguments of a command, and its truth."""
     subprocess.run([MADE_MACHINES, str(seed), str(number + 1), str(effects), folder], check=True,
                    stdout=subprocess.DEVNULL)
     case = Path(folder) / f"case-{number:02d}"
@@ -31,7 +31,7 @@ def made(seed: int, effects: int, number: int, folder: str) -> "tuple[Path, list
 
 
 def shared_friction_is_found() -> bool:
-    """A load that has 40 % of the friction follows otherwise than one that has all of it."""
+    """A load with 40 % of the friction moves differently from a load with all of it."""
     with tempfile.TemporaryDirectory() as folder:
         case, records, truth = made(*SHARED_FRICTION, folder)
         subprocess.run([AXISTOOL, "add", case / "model.toml", "backlash", *records, "-o", case / "gap.toml"], check=True,

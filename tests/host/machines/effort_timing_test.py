@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""When a logged current acts: loggers that average over a period beginning before or after the row.
+"""Time at which a logged current acts: loggers that average over a period beginning before or after the row.
 
-A machine without any hidden effect, whose log is the same but for that instant and for the current's noise. Wanted are
-the instant, the same parameters and the same verdict, and intervals that hold the truth as often as they say.
-SEEDS=200 tries the intervals on as many draws of the noise.
+The machine has no hidden effect; its logs differ only in this time and in the current's noise. Diagnose must find the
+time, the same parameters and the same verdict, with intervals that cover the truth as often as they claim. SEEDS=200
+tests the intervals with 200 draws of the noise.
 """
 
 import json
@@ -24,7 +24,7 @@ HELD = 0.4875
 
 
 def pushes(seed: int, rows: int):
-    """Efforts of ±0.5 to ±1.5 Nm, each for 50 to 250 ms, against a weak spring that keeps the axis in place."""
+    """Torques of ±0.5 to ±1.5 Nm, each for 50 to 250 ms, with a weak spring that keeps the axis in place."""
     draw = random.Random(seed)
     efforts: list[float] = []
     while len(efforts) < rows:
@@ -33,7 +33,7 @@ def pushes(seed: int, rows: int):
 
 
 def shifted(log, samples):
-    """What a logger writes that averages each row's effort over the period that begins so many samples after it."""
+    """The log of a logger that averages the torque of each row over a period beginning `samples` samples later."""
     whole, part = math.floor(samples), samples - math.floor(samples)
     
     def at(row: int) -> float:
@@ -86,7 +86,7 @@ class EffortTiming(logged.Log):
         self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 3.0)
 
     def test_intervals_hold_the_truth(self) -> None:
-        # The inertia's interval, 0.03 % wide, is narrower than what filters and differences leave of it.
+        # Not the inertia: its interval, 0.03 % wide, is narrower than the bias of filters and differences.
         names = ["B_Nm_s_per_rad", "positive_Nm", "negative_Nm", "effort_timing"]
         hits = dict.fromkeys(names, 0)
         for seed in range(SEEDS):

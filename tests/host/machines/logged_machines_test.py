@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Machines as people log them, through the program as people use it: identify, then diagnose.
+"""Typical logs of machines, analysed with the commands identify and diagnose.
 
-Their physics stands here in Python and shares no line with the simulator: small explicit steps, friction that holds
-until the rest of the effort exceeds it, a measured current with noise, positions in encoder counts.
+The physics is programmed here in Python, independent of the simulator: small explicit steps, friction that holds until
+the other torques exceed it, a measured current with noise, positions in encoder counts.
 """
 
 import json
@@ -19,12 +19,12 @@ AXISTOOL = os.environ["AXISTOOL"]
 
 
 class Machine:
-    """A motor, what rubs, what pulls, and maybe a load on a spring; efforts in Nm or N, positions in rad or m."""
+    """A motor with friction, external forces and optionally a load on a spring; in Nm or N, rad or m."""
 
     def __init__(
         self,
         inertia: float,
-        friction: Callable[[float, float], float],  # of speed and position, without its sign
+        friction: Callable[[float, float], float],  # magnitude, by speed and position
         pull: Callable[[float], float] = lambda position: 0.0,
         motor: Callable[[float, float], float] = lambda effort, position: effort,
         load: Optional[tuple[float, float, float, Callable[[float], float]]] = None,  # inertia, Hz, damping, friction
@@ -34,7 +34,7 @@ class Machine:
         self.gap = gap
 
     def run(self, control: Callable[[int, float, float], float], period_s: float, rows: int, parts: int = 10):
-        """(effort asked for, position) of every row; the effort is held until the next."""
+        """(commanded torque, position) of every row; the torque is held until the next row."""
         step = period_s / parts
         position = speed = load_position = load_speed = 0.0
         log = []
@@ -58,7 +58,7 @@ class Machine:
 
 
 class CableChain:
-    """A pull that turns over within some travel (Dahl's model); in N and m."""
+    """A force that reverses within some travel (Dahl's model); in N and m."""
 
     def __init__(self, most: float, travel: float):
         self.most, self.travel = most, travel
@@ -71,7 +71,7 @@ class CableChain:
 
 
 def held(speed: float, friction: float) -> float:
-    """What is left of a speed that friction can change by so much."""
+    """The speed after friction has reduced its magnitude by at most `friction`."""
     return 0.0 if abs(speed) <= friction else speed - math.copysign(friction, speed)
 
 
@@ -178,7 +178,7 @@ class LoggedMachines(Log):
             path = moves(seed, 7500, 0.002, 2.0, 2.0)
             self.write(name, arm.run(follow(path, 80.0, 6.0, 15.0), 0.002, 7500), 0.02)
         self.identified()
-        # A curve that flattens fits as well where it may rise towards rest, which is Stribeck friction.
+        # A flattening curve fits equally well if it may rise towards rest, which is Stribeck friction.
         diagnosis = self.diagnosed()
         self.assertEqual(sorted(diagnosis["verdict"]["effects"]), ["cogging", "stribeck"])
         self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 1.2)
@@ -211,7 +211,7 @@ class LoggedMachines(Log):
         for name, seed in (("train", 7), ("judge", 8)):
             self.write(name, fan.run(steps(seed, 6000, 0.005, 1.2), 0.005, 6000, 20), 0.02)
         self.identified()
-        # Half a row late, as its current is logged: that is no dead time of the drive.
+        # The current is logged half a row late, which is no dead time of the drive.
         self.assertEqual(self.diagnosed()["verdict"]["effects"], ["nonlinear_viscous"])
 
     def test_a_load_on_a_spring_with_friction_on_both_sides(self) -> None:

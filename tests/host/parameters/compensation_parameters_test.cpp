@@ -1,4 +1,4 @@
-// From a model's effects to the board's compensation.
+// Conversion of a model's effects to the board's compensation.
 #include "host/parameters/compensation_parameters.hpp"
 
 #include <gmock/gmock.h>
@@ -51,7 +51,7 @@ TEST(CompensationParameters, OfCoggingsTheLargestAreTaken) {
   EXPECT_EQ(value_of(model, "cogging.sine_2"), 0.4);
 }
 
-// Catches orders that are taken for separate periods, or left out: compensation would then add a ripple.
+// Catches orders that are treated as separate periods, or left out: compensation would then add a ripple.
 TEST(CompensationParameters, OrdersOfOnePeriodAreRipplesOfTheirOwn) {
   sim::EffectEntry motor = cogging(0.1, 0.0, 12.0);
   motor.parameters.insert({{"cosine_6", 0.0}, {"sine_6", 0.3}, {"cosine_24", 0.2}, {"sine_24", 0.0}});

@@ -1,6 +1,5 @@
-// The limits that design gives an axis' references, on the plants in closed loop: the command that the firmware really
-// gives stays within the stated reserve. Catches a missing load, friction or limit of the amplifier, and figures of the
-// wrong direction.
+// The limits of an axis's references from design, on the plants in closed loop: the firmware's command stays within the
+// stated reserve. Catches a missing load, friction or limit of the amplifier, and values of the wrong direction.
 #include "host/parameters/drive_limits.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +40,7 @@ struct Ride {
   double most_V = 0.0, worst_um = 0.0;
 };
 
-/// A line along x with the limits given, there or back, as the firmware follows it on the plant.
+/// A line along x with the given limits, forth or back, followed by the firmware on the plant.
 Ride ride(const sim::DriveDescription& drive, const host::ReferenceLimits& limits, double length_mm) {
   std::array<host::MachineAxis, 2> axes;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -51,7 +50,7 @@ Ride ride(const sim::DriveDescription& drive, const host::ReferenceLimits& limit
   const auto run = host::run_contour(axes, host::Path::line({length_mm, 0.0}),
                                      {limits.velocity, limits.acceleration, limits.jerk}, 5);
   Ride found;
-  // Means of 10 ms: the command's noise is not the limits' matter, and an acceleration lasts longer.
+  // Means over 10 ms remove the command's noise; an acceleration lasts longer.
   const std::vector<double>& u = run.records[0].u_V;
   constexpr std::size_t kMean = 10;
   for (std::size_t k = kMean; k <= u.size(); ++k)
@@ -87,7 +86,7 @@ TEST_P(OnThePlant, TheCommandStaysWithinTheReserve) {
   const double limit_V = one.limit_V(limits.written.velocity / (10.0 / (2.0 * std::numbers::pi)));
   EXPECT_NEAR(limits.limit_V, limit_V, 0.02 * limit_V);
   EXPECT_NEAR(limits.command_V, (1.0 - one.reserve) * limit_V, 0.03 * limit_V);
-  // Stated is the sum of the worst at once: a motion need not have the whole acceleration at its top speed.
+  // The stated command is the sum of all worst cases: a motion need not have its full acceleration at top speed.
   EXPECT_LE(done.most_V, 1.02 * limits.command_V);
   EXPECT_GE(done.most_V, 0.85 * limits.command_V);
   EXPECT_LT(done.worst_um, 40.0);
@@ -113,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
              [](double speed) { return 25.0 * (1.0 - speed / 600.0) / kGain; }}),
     [](const auto& which) { return which.param.name; });
 
-/// What the limits prevent: beyond them the amplifier gives no more, and the axis falls behind.
+/// Above the limits the amplifier saturates, and the axis falls behind.
 TEST(DriveLimits, BeyondTheDriveTheAxisFallsBehind) {
   const sim::DriveDescription drive = paper_x({effect("current_saturation", {{"limit", 20.0}})});
   const DriveLimits limits = host::drive_limits(drive, all_of(0.2));
@@ -125,7 +124,7 @@ TEST(DriveLimits, BeyondTheDriveTheAxisFallsBehind) {
     try {
       return both_ways(drive, beyond).worst_um;
     } catch (const host::Failure&) {
-      return 1e9;  // a monitor ended it
+      return 1e9;  // a monitor ended the motion
     }
   }();
   std::printf("within %.1f um, beyond %.1f um\n", within_um, beyond_um);
@@ -143,7 +142,7 @@ TEST(DriveLimits, UsualLimitsAreLoweredOnlyWhereTheDriveNeedsIt) {
   EXPECT_NEAR(weak.command_V, 0.7 * weak.limit_V, 0.01 * weak.limit_V);
 }
 
-/// The top speed: half of the acceleration is left, by the drive's equations written out.
+/// At the top speed half of the acceleration is left, by the drive's equations written out.
 TEST(DriveLimits, AVoltageLimitLowersTheTopSpeed) {
   const DriveLimits limits =
       host::drive_limits(paper_x({effect("voltage_limit", {{"stall", 20.0}, {"no_load_speed", 150.0}})}), {});
@@ -157,8 +156,8 @@ TEST(DriveLimits, AVoltageLimitLowersTheTopSpeed) {
   EXPECT_LT(limits.written.velocity, 250.0);
 }
 
-/// A ramp of the acceleration leaves in a mode of frequency f, undamped, at most 0.22 of its static deflection: the
-/// mode's equation, integrated. Ten times the jerk leaves nearly twice of it.
+/// A ramp of the acceleration excites an undamped mode of frequency f to at most 0.22 of its static deflection (mode
+/// equation, integrated); with ten times the jerk, to nearly twice the static deflection.
 TEST(DriveLimits, TheJerkSparesTheResonance) {
   const double resonance_Hz = 14.0;
   const auto spring =

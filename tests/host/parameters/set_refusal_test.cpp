@@ -1,4 +1,4 @@
-// Sets that must not close a loop are refused, with the relation and the poles in words.
+// Sets of parameters that must not close a loop are refused, with the relation and the poles in the message.
 #include "host/parameters/set_refusal.hpp"
 
 #include <gtest/gtest.h>
@@ -54,13 +54,13 @@ TEST(SetRefusal, MonitorsThatWouldNotProtectAreRefusedWithTheirCeiling) {
   EXPECT_TRUE(says(said_after({{"x.monitor.saturation_time", 2}}), "would not protect"));
 }
 
-/// The figure between `before` and what follows it.
+/// The number that follows `before`.
 double figure_after(const std::string& text, const std::string& before) {
   const std::size_t at = text.find(before);
   return at == std::string::npos ? -1.0 : std::strtod(text.c_str() + at + before.size(), nullptr);
 }
 
-/// A smaller lead makes the same limit a higher shaft speed: the message names the relation, and its figures are true.
+/// With a smaller lead the same limit is a higher shaft speed: the message states the relation with correct values.
 TEST(SetRefusal, WhatWouldFitIsSaidAndFits) {
   const std::string said = said_after({{"x.drive.lead", 0.1}});
   EXPECT_TRUE(says(said, "limits.velocity / drive.lead = 250 / 0.1 = 2500")) << said;
@@ -82,7 +82,7 @@ TEST(SetRefusal, TheCeilingsThatAreSaidAreThoseThatHold) {
   }
 }
 
-/// Catches an undetected sinking weight: the encoder is dead, and nothing moves by command.
+/// Catches a weight that sinks undetected: the encoder is dead and no motion is commanded.
 TEST(SetRefusal, ABrakeNeedsFeedbackAtRest) {
   const std::string said = said_after({{"x.brake.fitted", 1}, {"x.tachometer.fitted", 0}, {"x.kalman.k12", 0}});
   EXPECT_TRUE(says(said, "x.brake.fitted")) << said;

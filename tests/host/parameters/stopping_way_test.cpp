@@ -1,4 +1,4 @@
-// The formulas of a stop against the equations of motion, integrated.
+// The formulas of a stop against integrated equations of motion.
 #include "host/parameters/stopping_way.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using host::StoppingWay;
 constexpr StoppingFigures kLight{
     .inertia = 0.010, .friction = 0.2, .lead = 1.5915, .deceleration = 2000.0, .jerk = 50000.0};
 
-/// Steps of 10 us; the effort against the motion, Nm, by time.
+/// Integrates in steps of 10 us; `effort`: torque against the motion over time, Nm.
 template <typename Effort>
 StoppingWay integrated(const StoppingFigures& axis, double speed, Effort effort) {
   constexpr double kStep_s = 1e-5;

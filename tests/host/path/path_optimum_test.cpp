@@ -1,4 +1,4 @@
-// How much longer planned paths take than any motion along the same curves within the same limits would have to.
+// Duration of planned paths relative to the optimum along the same curves within the same limits.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -9,14 +9,15 @@ namespace {
 
 using namespace path_test;  // NOLINT(google-build-using-namespace)
 
-/// Times by another way than the planner's: the motion along the curve in 150 times of constant jerk, improved by
-/// successive linear programs (position, speed, acceleration and jerk of each axis linearised about the last motion)
-/// until it is no quicker any more (HiGHS; 250 times give 0.1 % less where the curve takes the acceleration). For a
-/// line of 40 mm at the limits that gives the seven phases' 0.3257 s. Short blends at speed are finer than its times:
-/// there a planner may be quicker (slot of 2 at 100), and without a feed it would cut through them. There the programs
-/// are over the square of the rate at which a motion along the curve is passed, a quadratic spline over cells of 1 ms,
-/// all limits at three points of each. From the planner's motion and from the 150 times' one, which differ much, that
-/// ends within 0.02, 0.2 and 0.7 % of each other (the less is taken), and within 0.02 % of the above at 150 mm/s.
+/// Optimal times from a method independent of the planner: the motion along the curve in 150 intervals of constant
+/// jerk, improved by successive linear programs (position, speed, acceleration and jerk of each axis linearised about
+/// the last motion) until converged (HiGHS; 250 intervals give 0.1 % less if the curve needs the acceleration). For a
+/// line of 40 mm at the limits this gives the 0.3257 s of the seven phases. Short blends at high speed are finer than
+/// the intervals: the planner may then be quicker (slot of 2 at 100), and without a feed the optimum would cut through
+/// them. For these cases the programs use the squared rate of passing a motion along the curve, a quadratic spline over
+/// cells of 1 ms with all limits at three points of each cell. Started from the planner's motion and from the very
+/// different one with 150 intervals, the results agree within 0.02, 0.2 and 0.7 % (the smaller is used), and within
+/// 0.02 % with the first method at 150 mm/s.
 struct Known {
   const char* name;
   double feed_mm_s, optimum_s;
@@ -33,9 +34,9 @@ std::vector<PathMove> slot(double radius, double feed, double tolerance) {
           move(PathCurve::line({20, 2 * radius, 0}, {0, 2 * radius, 0}), feed, tolerance)};
 }
 
-/// With the limits whole for the optimum, and the clock's reserve taken from the planner's.
+/// The optimum uses the full limits; the planner keeps the clock's reserve.
 TEST(PlannedPath, TakesLittleMoreThanTheOptimum) {
-  AXIS_SKIP_WHERE_INSTRUMENTED();  // random programs take the same way there
+  AXIS_SKIP_WHERE_INSTRUMENTED();  // random programs cover the same code
   constexpr double kTurn = 2.0 * std::numbers::pi, kFree = 1e9;
   const Known known[] = {{"the paper's circle", 170, 1.4190, arc(35, kTurn, 170)},
                          {"circle at 150", 150, 1.5816, arc(35, kTurn, 150)},
@@ -46,7 +47,7 @@ TEST(PlannedPath, TakesLittleMoreThanTheOptimum) {
                          {"slot of 2, blended", 50, 0.9883, slot(2, 50, 0.05)},
                          {"slot of 2, blended", 100, 0.6666, slot(2, 100, 0.05)},
                          {"slot of 10, blended", 100, 0.8041, slot(10, 100, 0.05)},
-                         // Their curvature takes the acceleration, where they are quick.
+                         // At high speed their curvature needs the acceleration.
                          {"three quarters of a circle of 2", 20, 0.5115, arc(2, 0.75 * kTurn, 20)},
                          {"three quarters of a circle of 2", 50, 0.2578, arc(2, 0.75 * kTurn, 50)},
                          {"three quarters of a circle of 2", kFree, 0.2437, arc(2, 0.75 * kTurn, kFree)},

@@ -1,4 +1,4 @@
-// Planned paths, followed as on the board: within the limits, on the path, and not slower than necessary.
+// Planned paths, followed as on the board, stay within the limits and on the path, and are not slower than necessary.
 #include "host/path/path_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<PathPoint> followed(const host::PlannedPath& path) {
   return points;
 }
 
-/// Time of a straight line of so many mm: the seven phases, by hand, with the clock's reserve.
+/// Time of a straight line of `length` mm: seven phases calculated by hand, with the clock's reserve.
 double line_time(double length, double speed) {
   constexpr double kRate = firmware::kLeastHeadroom;
   const double acceleration = kAcceleration / (kRate * kRate), jerk = kJerk / (kRate * kRate * kRate);
@@ -63,14 +63,14 @@ TEST(PlannedPath, LinesTakeTheShortestTimeThatTheirAxesAllow) {
   for (const double length : {0.01, 0.3, 4.0, 40.0, 400.0}) {
     const auto along = plan_path({move(PathCurve::line({0, 0, 0}, {length, 0, 0}), 1e9)}, options());
     EXPECT_NEAR(along.duration_s(), line_time(length, kVelocity), 3e-4 * along.duration_s());
-    // Two axes share the work of a diagonal.
+    // The axes share the speed of a diagonal.
     const double side = length / std::numbers::sqrt2;
     const auto across = plan_path({move(PathCurve::line({0, 0, 0}, {side, side, 0}), 1e9)}, options());
     EXPECT_NEAR(across.duration_s(), line_time(side, kVelocity), 3e-4 * across.duration_s());
   }
 }
 
-/// Catches a planner that stops, or takes its acceleration back, where only the program's lines meet.
+/// Catches a planner that stops or reduces its acceleration where collinear lines meet.
 TEST(PlannedPath, ALineInPiecesIsAsQuickAsTheWhole) {
   std::vector<PathMove> pieces;
   for (int k = 0; k < 200; ++k) pieces.push_back(move(PathCurve::line({0.2 * k, 0, 0}, {0.2 * (k + 1), 0, 0}), 120.0));
@@ -120,14 +120,14 @@ TEST(PlannedPath, ProgramsKeepToTheirPathAndTheirLimits) {
     if (file.path().extension() != ".ngc" || file.path().filename().string().starts_with("bad-")) continue;
     ++programs;
 #ifdef AXIS_INSTRUMENTED
-    if (programs % 4 != 0) continue;  // each takes a hundred times as long there
+    if (programs % 4 != 0) continue;  // with instrumentation each takes a hundred times as long
 #endif
     SCOPED_TRACE(file.path().filename());
     std::ifstream in(file.path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     const auto program = host::read_gcode(text, file.path().filename(), PathPoint::Zero(), {});
     const auto path = plan_path(program.moves, options());
-    if (path.duration_s() > 60.0) continue;  // a feed for another day: nothing in it that shorter ones have not
+    if (path.duration_s() > 60.0) continue;  // too long; covers nothing that shorter programs do not
     const auto points = followed(path);
     double tolerance_mm = 0.0;
     for (const PathMove& one : program.moves) tolerance_mm = std::max(tolerance_mm, one.tolerance_mm);
@@ -140,7 +140,7 @@ TEST(PlannedPath, ProgramsKeepToTheirPathAndTheirLimits) {
   EXPECT_GE(programs, 38);
 }
 
-/// More of them: AXIS_PATH_PROGRAMS=10000, of `make soak`.
+/// AXIS_PATH_PROGRAMS=10000 runs more programs (`make soak`).
 TEST(PlannedPath, RandomProgramsNeverExceedTheirLimits) {
   const int programs = path_test::programs_to_try();
   double slowest = 1.0;

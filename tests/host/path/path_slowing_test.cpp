@@ -1,5 +1,5 @@
-// What the path clock adds to the axes' motion while it slows down and gains speed: in feed holds, at other feeds, and
-// where nodes fail to come.
+// Motion of the axes while the path clock slows down and speeds up: in feed holds, with overrides, and when nodes are
+// missing.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,11 +14,11 @@ using namespace path_test;  // NOLINT(google-build-using-namespace)
 
 enum class Disturbance { hold, override, starvation };
 
-/// With the axes' limits and the clock's shares of them, as the board opens a path (PathService::open).
+/// A path with the axes' limits and the clock's shares of them, as opened on the board (PathService::open).
 struct Disturbed {
   std::vector<PathPoint> points{3, PathPoint::Zero()};
   firmware::PathEnd end = firmware::PathEnd::none;
-  int longest_stop = 0;  ///< samples, of holds that were not taken back
+  int longest_stop = 0;  ///< longest stop in samples, for holds that were not resumed
 };
 Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& numbers) {
   const host::PathScale scale{{0, 1}, {kCount_mm, kCount_mm}, {1.0, 1.0}, kRate_Hz};
@@ -29,7 +29,7 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
   LedAxes axes;
   Disturbed seen;
   std::size_t sent = 0;
-  // Starving: so many nodes come, and no more.
+  // Starving: only this many nodes arrive.
   const std::size_t most_nodes =
       what == Disturbance::starvation ? 1 + numbers() % words.nodes.size() : words.nodes.size();
   std::uniform_int_distribution<int> pause(1, 600);
@@ -66,8 +66,8 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
 class ThePathClock : public testing::TestWithParam<Disturbance> {};
 
 /// Catches a clock that runs backwards, one that ignores the path's own share of an axis's limits, and one that does
-/// not stop in time: along the bound of its change with the smallest headroom, and three of its ramps. More of them:
-/// AXIS_PATH_PROGRAMS=10000, of `make soak`.
+/// not stop in time: along the bound of its change with the smallest headroom, and three of its ramps.
+/// AXIS_PATH_PROGRAMS=10000 runs more programs (`make soak`).
 TEST_P(ThePathClock, HoldsTheAxesLimitsAndLeavesNoPath) {
   const int programs = path_test::programs_to_try();
   Seen worst;

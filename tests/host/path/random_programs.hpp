@@ -18,7 +18,7 @@ using host::PathCurve;
 using host::PathMove;
 using host::PathPoint;
 
-/// AXIS_PATH_PROGRAMS, or 40; a tenth of them where instrumentation makes each a hundred times slower.
+/// AXIS_PATH_PROGRAMS, or 40; a tenth of them with instrumentation, which makes each a hundred times slower.
 inline int programs_to_try() {
   if (const char* wanted = std::getenv("AXIS_PATH_PROGRAMS")) return std::atoi(wanted);
 #ifdef AXIS_INSTRUMENTED
@@ -31,7 +31,7 @@ inline int programs_to_try() {
 inline constexpr double kCount_mm = 0.00244140625, kRate_Hz = 1000.0;
 inline constexpr double kVelocity = 250.0, kAcceleration = 2000.0, kJerk = 50'000.0;  // the paper's axes
 
-/// Of each axis, as the board has them.
+/// Limits of each axis in the board's form.
 inline firmware::PathLimits board_limits() {
   const auto per_sample = [](double of_mm, int power) {
     return static_cast<float>(of_mm / kCount_mm / std::pow(kRate_Hz, power));
@@ -75,7 +75,7 @@ inline firmware::PathNode<2> node_of(const host::PathWord& word) {
   return node;
 }
 
-/// Shares of the limits, from differences of positions, and the way off the program in counts.
+/// Used shares of the limits, from differences of positions, and the distance from the programmed path in counts.
 struct Seen {
   double velocity = 0.0, acceleration = 0.0, jerk = 0.0, off_counts = 0.0;
 };
@@ -112,7 +112,7 @@ inline std::vector<PathMove> random_program(std::mt19937_64& numbers) {
     moves.push_back(move(is_arc ? PathCurve::arc(at, there, 6.0 * even(numbers), 0.0) : PathCurve::line(at, there),
                          feed, tolerance));
     at = moves.back().curve.end();
-    if (!is_arc && even(numbers) > 0.3) {  // a tangent arc behind the line
+    if (!is_arc && even(numbers) > 0.3) {  // a tangent arc after the line
       const PathPoint side(-std::sin(direction), std::cos(direction), 0.0);
       const double turn = even(numbers) * 3.0;
       moves.push_back(move(PathCurve::arc(at, at + std::copysign(size, turn) * side, turn, 0.0), feed, tolerance));

@@ -25,7 +25,7 @@ LOGS = DATA.parents[1] / "host" / "examples" / "log"
 
 
 class Frame:
-    """What of a pandas DataFrame is used; pandas itself is no package that the tests need."""
+    """The used part of a pandas DataFrame, so that the tests do not need pandas."""
 
     class Index:
         name = "t_s"
@@ -118,7 +118,7 @@ class Notebook(unittest.TestCase):
             self.assertIn(word, result._repr_html_())
 
     def test_plots_are_given_the_figures(self) -> None:
-        """Axes that note what is drawn stand for matplotlib's; without it plot() says how to install it."""
+        """Fake axes record the plots instead of matplotlib; without matplotlib plot() says how to install it."""
         found = axistool.identify(CASE / "train-steps.csv", drive=CASE / "model.toml")
         compared = axistool.compare(found.model, CASE / "validate.csv")
         steps = [axistool.ImprovementStep([], 9.0, 8.0), axistool.ImprovementStep(["cogging"], 1.1, 1.2)]

@@ -1,6 +1,6 @@
 #!/bin/bash
-# package_test.sh: the Python package installs from a copy of its folder by Debian's own pip, with the module that this
-# build tree makes; without a project or a tree it says so; its types hold under mypy --strict, and its stub is the module's.
+# package_test.sh: the Python package installs from a copy of its folder with Debian's pip and this build tree's module.
+# Without a project or a build tree it says so. Its types pass mypy --strict, and its stub matches the module.
 set -euo pipefail
 python=/usr/bin/python3
 $python -c 'import numpy, setuptools, pip' 2> /dev/null || { echo "python3-numpy, -setuptools or -pip is missing" >&2; exit 77; }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python package: the command line's figures bit for bit, its errors in its words, records and models both ways."""
+"""The Python package gives the command line's results bit for bit and its messages; reads and writes its files."""
 
 import json
 import os
@@ -33,7 +33,7 @@ def command_line(*arguments: object) -> dict:
 
 
 class SameFigures(unittest.TestCase):
-    """JSON carries doubles that read back as the same bits, so equality here is of bits."""
+    """JSON numbers read back as the same doubles, so equality is bit for bit."""
 
     def test_identify_compare_predict_and_design(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

@@ -28,11 +28,12 @@ host::Record shaken(const TwoMassMachine& machine, double noise_V, unsigned seed
 TwoMassMachine machine_without_friction() {
   TwoMassMachine machine;
   machine.coulomb = machine.stribeck = 0.0;
-  machine.damping = 0.1;  // lines a hertz apart tell such a resonance
+  machine.damping = 0.1;  // lines 1 Hz apart resolve such a resonance
   return machine;
 }
 
-/// A missing hold of a sample turns by 36 degrees at 100 Hz; a window that is not taken off scales.
+/// Catches a missing hold, which shifts the phase by 36 degrees at 100 Hz, and a window that is not corrected, which
+/// scales the response.
 TEST(ArbitraryRecord, GivesTheResponseWhereCommandAndAnswerAreCoherent) {
   const TwoMassMachine machine = machine_without_friction();
   const auto response = host::frequency_response({shaken(machine, 3.0, 1, 60000)});

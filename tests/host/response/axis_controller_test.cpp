@@ -1,4 +1,4 @@
-// The controller's frequency response against the control core itself, run in time.
+// The controller's frequency response against the control core in the time domain.
 #include "host/response/axis_controller.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(AxisController, AnswersAsTheCoreDoes) {
   for (const bool has_filters : {false, true}) {
     if (has_filters)
       parameters.filters = host::core_filters({host::Notch{130.0, 0.3, 0.2}, host::LowPass{210.0}}, 1e-3);
-    parameters.disturbance_cancellation_on = false;  // an integrator alone never settles
+    parameters.disturbance_cancellation_on = false;  // an open integrator never settles
     const host::AxisController controller(parameters);
     for (const double f_Hz : {5.0, 40.0, 130.0, 260.0}) {
       const Eigen::RowVector2cd wanted = -controller.at(f_Hz);

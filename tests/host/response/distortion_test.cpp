@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kPeriod = 512;
 const std::vector<std::size_t> kLines{5, 9, 13, 21, 25, 33, 37, 45};
 
-/// speed = u + even u^2 + odd u^3, and noise on it.
+/// speed = u + even u^2 + odd u^3 + noise.
 std::vector<host::Record> runs_of(double even, double odd, double noise) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> turns(0.0, 1.0);
@@ -67,7 +67,7 @@ TEST(Distortion, OfAnOddPowerIsInOddLinesAlone) {
   EXPECT_LT(root_mean_square(response.even), 1e-6);
 }
 
-/// Noise alone is no distortion: in the mean of five periods 0.2 of it leaves 0.026, which is taken off.
+/// Noise alone is not distortion: noise of 0.2 leaves 0.026 in the mean of five periods, which is subtracted.
 TEST(Distortion, IsNotWhatNoiseLeaves) {
   const auto noisy = host::frequency_response(runs_of(0.0, 0.0, 0.2));
   EXPECT_LT(root_mean_square(noisy.even), 0.01);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// The sum that defines a line.
+/// The defining sum of a line.
 std::complex<double> line_of(const std::vector<double>& x, std::size_t line) {
   std::complex<double> sum = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k)

@@ -1,4 +1,4 @@
-// Values of a fit that are entered into a model, and values that are not.
+// Values of a fit that are used for a model, and values that are not.
 #include "host/response/model_starts.hpp"
 
 #include <gtest/gtest.h>

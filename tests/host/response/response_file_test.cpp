@@ -1,4 +1,4 @@
-// Response files: those of `bode` are read again, and no other content crashes the program.
+// Response files of `bode` can be read again, and no other content crashes the program.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A double integrator behind a hold, with 1 % of uncertainty.
+/// A double integrator after a hold, with 1 % of uncertainty.
 json document() {
   host::AxisResponse axis;
   host::FrequencyResponse& response = axis.response;
@@ -30,7 +30,7 @@ json document() {
   return host::response_json(axis);
 }
 
-/// The numbers and lists of a document, by their pointers.
+/// Pointers to all numbers and lists of a document.
 std::vector<json::json_pointer> places(const json& document) {
   std::vector<json::json_pointer> found;
   const json flat = document.flatten();
@@ -49,7 +49,7 @@ TEST(ResponseFile, ReadsBack) {
   EXPECT_TRUE(read.fit.has_value());
 }
 
-/// Catches the solver's Jacobian read where the solver made none.
+/// Catches access to a Jacobian that the solver has not computed.
 TEST(ResponseFile, OfWildValuesIsRefused) {
   const TemporaryFolder folder;
   for (const char* place : {"/plant/re/3", "/plant/im/0", "/covariance/2/0", "/f_Hz/1", "/sample_period_s", "/noise/0",

@@ -91,7 +91,7 @@ TEST_F(MeasuredOnABoard, AResponseSurvivesItsFile) {
   EXPECT_NEAR(axis.margins->phase_deg->ci95[0], again.margins->phase_deg->ci95[0], 1e-6);
 }
 
-/// A light axis with a long lead has a large response: if the plan ignores the monitor, the axis stops with a following
+/// A light axis with a long lead has a large response. If the plan ignores the monitor, the axis stops with a following
 /// error.
 TEST_F(MeasuredOnABoard, TheAnswerStaysWellWithinTheFollowingErrorThatIsWatched) {
   const auto lowest_V = [&](float watched_mm) {

@@ -23,7 +23,7 @@ inline firmware::AxisParameters<float> controller_for(const TwoMassMachine& mach
   return host::axis_parameters(model, host::design_axis(model, {}), 0.01);
 }
 
-/// A band of lines, in periods of 1024 samples, and its peak.
+/// A band of lines in periods of 1024 samples, with its peak amplitude.
 struct Band {
   std::vector<std::size_t> lines;
   double peak_V;
@@ -50,7 +50,7 @@ inline std::vector<host::Record> rides(const TwoMassMachine& machine, const firm
   return records;
 }
 
-/// Drive and estimator as one system in time, cut at the drive's input: no part of it is a frequency response.
+/// Drive and estimator as one system in the time domain, cut at the drive's input; uses no frequency response.
 class ExactOpenLoop {
  public:
   ExactOpenLoop(const TwoMassMachine& machine, const firmware::AxisParameters<float>& parameters)

@@ -1,5 +1,5 @@
-// A machine that shares no code with the simulator, and the experiments on it: two masses on a spring, friction with a
-// Stribeck peak, an encoder at the table, a noisy tachometer at the motor, Runge-Kutta steps; and its exact response.
+// A machine independent of the simulator, and the experiments on it: two masses on a spring, friction with a Stribeck
+// peak, an encoder at the table, a noisy tachometer at the motor, Runge-Kutta steps; and its exact response.
 #pragma once
 
 #include <Eigen/Dense>
@@ -46,8 +46,8 @@ struct TwoMassMachine {
     }
   }
 
-  /// Table's position (mm/V) and motor's speed (rad/s/V), sampled behind a hold, of the machine without Coulomb
-  /// friction: what a small motion on top of a jog meets.
+  /// Position of the table (mm/V) and speed of the motor (rad/s/V), sampled after a hold, of the machine without
+  /// Coulomb friction: the response to a small motion added to a jog.
   Eigen::Vector2cd response(double f_Hz) const {
     Eigen::Matrix<double, 5, 5> held = Eigen::Matrix<double, 5, 5>::Zero();
     for (int i = 0; i < 4; ++i) held.block<4, 1>(0, i) = derivative(Eigen::Vector4d::Unit(i), 0.0, false);
@@ -81,7 +81,7 @@ struct Gains {
   }
 };
 
-/// The law of the manual, written down once more: estimate, feedback, velocity feed-forward.
+/// An independent implementation of the control law: estimate, feedback, velocity feed-forward.
 class HandWrittenLoop {
  public:
   HandWrittenLoop(const TwoMassMachine& machine, const firmware::AxisParameters<float>& parameters, unsigned seed)

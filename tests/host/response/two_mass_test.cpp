@@ -24,7 +24,7 @@ class TwoMasses : public testing::Test {
   firmware::AxisParameters<float> controller_ = controller_for(machine_);
 };
 
-/// With the phases' sign, the hold or the delay of a sample wrong, phase is off by more than this at 200 Hz.
+/// A wrong sign of the phase, a wrong hold or a wrong delay causes a larger phase error than this at 200 Hz.
 TEST_F(TwoMasses, AreMeasuredToHalfADecibelAndThreeDegreesUpToFiveTimesTheCrossover) {
   const auto response = host::frequency_response(rides(machine_, controller_, 1, 8));
   EXPECT_EQ(response.realisations, 8u);
@@ -45,7 +45,7 @@ TEST_F(TwoMasses, AreMeasuredToHalfADecibelAndThreeDegreesUpToFiveTimesTheCrosso
               response.lines.size(), response.lines.back().f_Hz / margins.crossover_Hz->value, most_dB, most_degrees);
 }
 
-/// As cogging does that recurs with a line's own frequency while the axis rides, and its neighbours with it.
+/// A disturbance at the frequency of a line and its neighbours, as caused by cogging during the jog.
 TEST_F(TwoMasses, KeepTheirMarginsWhereTheRideDrownsALine) {
   auto response = host::frequency_response(rides(machine_, controller_, 1));
   const auto fit = host::fit_plant(response);
@@ -108,7 +108,7 @@ TEST_F(TwoMasses, AreToldToBecomeUnstable) {
     firmware::AxisParameters<float> changed = controller_;
     const auto factor = static_cast<float>(gain * exact.gain_margin());
     changed.Kc = {controller_.Kc[0] * factor, controller_.Kc[1] * factor};
-    // Gain of the feedback is not gain of the loop, as the estimator knows the command: asked of the exact loop.
+    // The gain of the feedback is not that of the loop, because the estimator uses the command. Uses the exact loop.
     const bool is_stable = ExactOpenLoop(machine_, changed).is_stable(1.0);
     const auto margins = host::margins_of(response, fit, host::AxisController(changed));
     EXPECT_EQ(margins.is_stable, is_stable) << gain;
@@ -117,7 +117,7 @@ TEST_F(TwoMasses, AreToldToBecomeUnstable) {
   }
 }
 
-/// An interval that forgets Student's factor, the second part of a complex value or the realisations is off by more.
+/// Catches intervals that ignore Student's factor, the second part of a complex value, or the realisations.
 TEST_F(TwoMasses, LieWithinTheBandsAsOftenAsThesePromise) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const char* wanted = std::getenv("AXIS_COVERAGE_SEEDS");

@@ -1,4 +1,4 @@
-// A change that does not concern the physics must not change the diagnosis, on a record simulated by another program.
+// A change without effect on the physics must not change the diagnosis, on a record simulated by another program.
 #include "host/scoreboard/rewriting.hpp"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 
 namespace {
 
-// All at once, because the original is diagnosed once for all. The last one changes the physics: the command is in
-// another volt than the data sheet, and the parameters must show it.
+// All in one test, because the original is diagnosed only once. The last change affects the physics: the command has
+// another scale than the data sheet, which the parameters must show.
 TEST(Rewritten, ACaseGetsTheSameAnswerUnlessThePhysicsChanges) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Question question =

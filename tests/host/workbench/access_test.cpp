@@ -1,4 +1,4 @@
-// Access: none without the token, from another site, or under another host name.
+// Access is refused without the token, from another site, or under another host name.
 #include "host/workbench/access.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The workbench as its user meets it, in a real browser: drop a record, compare, find what is missing, click an effect,
-and the error falls; reload in the middle of a job; dark, wide and narrow; no console message, nothing sideways.
-AXIS_SCREENSHOTS names a folder that keeps what it saw."""
+"""The workbench in a real browser: drop a record, compare, find the missing effect, click an effect, and the error
+falls; reload during a job; dark, wide and narrow layout; no console message, no horizontal scrolling. AXIS_SCREENSHOTS
+names a folder for screenshots."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 CASE = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases/single/case-00"  # this machine cogs
 
-# Drops a file on the page as a hand does; its content comes from a file input that exists for this purpose only.
+# Drops a file on the page; its content comes from a file input that exists only for this purpose.
 DROP = """
 const input = document.getElementById("test-input"), data = new DataTransfer();
 for (const file of input.files) data.items.add(file);
@@ -47,7 +47,7 @@ class Workbench(ServedPage, unittest.TestCase):
         self.browser.execute_script(DROP)
 
     def keep(self, name: str) -> None:
-        """Saves a picture of the whole page if AXIS_SCREENSHOTS is set; checks what holds in every view."""
+        """Saves a screenshot of the whole page if AXIS_SCREENSHOTS is set; checks conditions of every view."""
         wide = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
         self.assertLessEqual(wide, 0, f"{name}: nothing lies beside the page")
         if not (folder := os.environ.get("AXIS_SCREENSHOTS")):

@@ -8,8 +8,8 @@
 
 namespace {
 
-/// RMS residual with the effect over that without it. Two runs that differ by the tachometer's noise alone differ by a
-/// per cent.
+/// Least ratio of the RMS residual with and without the effect. Two runs that differ only in the tachometer's noise
+/// differ by 1 %.
 constexpr double kShows = 1.2;
 
 TEST(Gallery, EachEffectHasAPictureThatDiffersFromThatWithoutIt) {

@@ -186,7 +186,7 @@ TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
        {"+ cogging", "model+cogging.toml predicts best", "cogging.period", "-o model+cogging.toml"})
     EXPECT_THAT(story, testing::HasSubstr(told_there));
 
-  // Another session on the folder; one of whose jobs was under way when the last one crashed.
+  // Another session on the folder, in which a job was running when the last session crashed.
   json crashed = json::parse(host::read_file("workbench/0001.job.json"));
   crashed["id"] = 2;
   crashed["state"] = "running";

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Takes cases through the page of the workbench and through the command: page_cases.py OUTPUT CASE...; each CASE is a
 folder with records and model.toml, or drive.toml, which the page identifies first. The verdicts must be the same to the
-last digit. OUTPUT gets the winning panel of each case and one contact sheet of them, sheet.png, to be looked at.
-AXISTOOL names the program. Ends with 1 where a case failed."""
+last digit. Writes the winning panel of each case and one contact sheet of them, sheet.png, to OUTPUT. AXISTOOL names
+the program. Exit code 1: a case failed."""
 
 import html
 import json
@@ -23,7 +23,7 @@ LONGEST_S = 900
 
 
 def files_of(case: Path) -> tuple[list[str], list[str], str]:
-    """Training records, validation records, model; of measured machines as the expected.json beside them says."""
+    """Training records, validation records, model; for measured machines from their expected.json."""
     expected = case.parent / "expected.json"
     model = "model.toml" if (case / "model.toml").exists() else "drive.toml"
     if expected.exists() and case.name in (machines := json.loads(expected.read_text())["machines"]):
@@ -44,7 +44,7 @@ class Case(ServedPage):
         raise TimeoutError(f"{name} takes longer than {LONGEST_S} s")
 
     def go(self, case: Path, panel: Path) -> dict:
-        """What was found, and what differs from the command."""
+        """The result of the page, and differences from the command."""
         train, validate, model = files_of(case)
         folder = Path(tempfile.mkdtemp(prefix="axis-case-"))
         for name in [*train, *validate, model]:

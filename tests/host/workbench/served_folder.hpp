@@ -12,7 +12,7 @@
 #include "host/workbench/server.hpp"
 #include "tests/host/temporary_folder.hpp"
 
-/// During its lifetime, the working directory is a new folder.
+/// During its lifetime the working directory is a new folder.
 class WorkingFolder {
  public:
   WorkingFolder() { std::filesystem::current_path(folder.path("")); }

@@ -1,4 +1,4 @@
-"""A workbench that serves a folder, in a real browser without a window. Ends with 77 where there is no browser."""
+"""A workbench that serves a folder, in a real headless browser. Exit code 77 without a browser."""
 
 import os
 import shutil
@@ -58,7 +58,8 @@ class ServedPage:
         return self.browser.execute_script("return [...document.querySelectorAll(arguments[0])].map((one) => one.innerText.trim())", selector)
 
     def click(self, selector: str) -> None:
-        """Once more if the page has drawn the element anew since it was found: results come at any time."""
+        """Clicks; repeats if the page has redrawn the element since it was found, because results arrive at any
+        time."""
         def clicked(_) -> bool:
             element = self.until(selector)
             self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
