@@ -3,11 +3,11 @@
 #include <cstdint>
 
 #include "firmware/app/board_application.hpp"
+#include "firmware/boards/emulated/memory_flash.hpp"
 #include "firmware/boards/image/board_scalar.hpp"
 #include "firmware/boards/image/capture_memory.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
-#include "firmware/boards/emulated/memory_flash.hpp"
 #include "tests/firmware/fitted_axis.hpp"
 #include "tests/target/images/instruction_counter.hpp"
 #include "tests/target/images/rigid_drive.hpp"
