@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/certainty.hpp"
 #include "host/diagnose/effect_by_motion.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
-#include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/effort/second_mass_terms.hpp"
 #include "host/evidence/measured_sensors.hpp"
