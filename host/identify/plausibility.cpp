@@ -28,11 +28,12 @@ bool is_inside(double value, const sim::ParameterInfo& info) { return value >= i
 /// Parameters of either sign: components of a phase, offsets.
 bool has_either_sign(const sim::ParameterInfo& info) { return info.lower < 0.0 && info.upper > 0.0; }
 
-/// A value on a bound of the fit is not an estimate. A bound at zero is allowed, because the effect is then absent.
+/// A value on a bound of the fit is not an estimate. A bound at zero, or at which a spring is rigid, is allowed,
+/// because this part of the effect is then absent.
 bool is_on_bound(double value, const sim::ParameterInfo& info) {
   constexpr double kOn = 1e-3;
   const auto on = [value](double bound) { return bound != 0.0 && std::abs(value - bound) <= kOn * std::abs(bound); };
-  return on(info.lower) || on(info.upper);
+  return on(info.lower) || (on(info.upper) && !info.rigid_at_upper);
 }
 
 /// The meaning of a forbidden sign; may be empty.
