@@ -19,6 +19,9 @@ inline constexpr double kMostLuck = 0.05;
 /// claimed.
 inline constexpr double kLeastGain = 0.05;
 
+/// Two models predict equally well if their errors differ by a smaller factor.
+inline constexpr double kAsGood = 1.1;
+
 /// Explained share of the explainable squared error, before^2 - kComplete^2; 0..1. 0 if nothing is explainable.
 double explained_share(double before, double after);
 

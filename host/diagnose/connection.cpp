@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/diagnose/certainty.hpp"
+#include "host/diagnose/claim.hpp"
 #include "host/diagnose/effect_by_motion.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/effort/effort_screen.hpp"
@@ -36,19 +37,17 @@ struct ByMotion {
 
 /// Predicts both sets better.
 bool is_better(const ErrorOnSets& one, const ErrorOnSets& other) {
-  constexpr double kBetter = 1.1;  // as of models that predict equally well
-  return kBetter * one.train.combined < other.train.combined &&
-         kBetter * one.validate.combined < other.validate.combined;
+  return kAsGood * one.train.combined < other.train.combined &&
+         kAsGood * one.validate.combined < other.validate.combined;
 }
 
 /// The better of two fits of one connection: alone, and beside the other effects that the balance names.
 std::optional<ByMotion> fitted_connection(const std::string& kind, const Diagnosis& diagnosis,
-                                          const sim::DriveDescription& given, const Measurements& measured) {
+                                          const sim::DriveDescription& model, const Measurements& measured,
+                                          const PreparedSets& fitted) {
   const sim::EffectInfo& effect = *sim::find_effect(kind);
-  const sim::DriveDescription model = with_measured_sensors(given, measured);
-  const PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
   std::optional<ByMotion> best;
-  if (std::optional<EffectByMotion> alone = fit_effect_by_motion(effect, model, measured, split))
+  if (std::optional<EffectByMotion> alone = fit_effect_by_motion(effect, model, measured, fitted))
     best = ByMotion{alone->best.model, diagnosis.rows.error_of(alone->best.model)};
   sim::DriveDescription others = diagnosis.screen->best().model;
   std::erase_if(others.effects, [](const sim::EffectEntry& entry) { return is_connection(entry.kind); });
@@ -60,7 +59,11 @@ std::optional<ByMotion> fitted_connection(const std::string& kind, const Diagnos
 
 /// The verdict of the balance with a gap in place of its spring. Of its other effects those remain that the model has.
 void exchange_spring(const sim::DriveDescription& with_gap, Diagnosis& diagnosis) {
-  const auto is_withdrawn = [&](const std::string& kind) { return kind != kSpring && with_gap.find(kind) == nullptr; };
+  auto screen = std::make_shared<EffortScreen>(*diagnosis.screen);
+  const std::vector<std::string> named = screen->best().kinds;
+  const auto is_withdrawn = [&](const std::string& kind) {
+    return kind != kSpring && holds_all(named, {kind}) && with_gap.find(kind) == nullptr;
+  };
   const auto rename_in = [](std::vector<std::string>& kinds) {
     std::ranges::replace(kinds, std::string(kSpring), std::string(kGap));
   };
@@ -68,8 +71,6 @@ void exchange_spring(const sim::DriveDescription& with_gap, Diagnosis& diagnosis
     std::erase_if(kinds, is_withdrawn);
     rename_in(kinds);
   };
-  auto screen = std::make_shared<EffortScreen>(*diagnosis.screen);
-  const std::vector<std::string> named = screen->best().kinds;
   std::vector<ScreenedModel> steps;
   std::vector<std::vector<std::string>> tied;
   for (std::size_t step = 0; step < screen->chosen.size(); ++step) {
@@ -95,8 +96,7 @@ void exchange_spring(const sim::DriveDescription& with_gap, Diagnosis& diagnosis
       candidate.model = with_gap;
       exchange_in(candidate.kinds);
     } else {
-      const bool is_beside_withdrawn = std::ranges::any_of(
-          named, [&](const std::string& kind) { return is_withdrawn(kind) && holds_all(candidate.kinds, {kind}); });
+      const bool is_beside_withdrawn = std::ranges::any_of(candidate.kinds, is_withdrawn);
       rename_in(candidate.kinds);
       if (sim::EffectEntry* spring = candidate.model.find(kSpring)) *spring = *with_gap.find(kGap);
       if (is_beside_withdrawn || candidate.kinds == screen->best().kinds) {
@@ -110,12 +110,23 @@ void exchange_spring(const sim::DriveDescription& with_gap, Diagnosis& diagnosis
   diagnosis.screen = std::move(screen);
   diagnosis.best = with_gap;
   exchange_in(verdict.effects);
+  std::erase_if(verdict.alternatives,
+                [&](const std::vector<std::string>& group) { return is_withdrawn(group.front()); });
   std::ranges::for_each(verdict.alternatives, rename_in);
+  if (verdict.effects.empty()) {  // of the spring's group alone
+    verdict.status = Status::ambiguous;
+    verdict.effects = verdict.alternatives.front();
+  }
+  for (const std::string& kind : named)
+    if (is_withdrawn(kind))
+      verdict.explanation +=
+          fmt::format(" {}, found beside the spring, does not improve the prediction with a gap and is withdrawn.",
+                      sim::find_effect(kind)->title);
 }
 
 }  // namespace
 
-bool is_connection(std::string_view kind) { return kind == kSpring || kind == kGap; }
+bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
 
 void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const sim::DriveDescription& given,
                                        const Measurements& measured, const std::vector<std::string>& absent) {
@@ -124,8 +135,11 @@ void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const sim::DriveDes
     return std::ranges::find(kinds, kGap) != kinds.end();
   };
   if (holds_gap(absent) || std::ranges::any_of(diagnosis.screen->tied, holds_gap)) return;
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
+  const PreparedSets sets =
+      with_base_fitted(split_sets(model, measured.training_records(), measured.validation_records()));
   const auto fitted = [&](std::string_view kind) {
-    return fitted_connection(std::string(kind), diagnosis, given, measured);
+    return fitted_connection(std::string(kind), diagnosis, model, measured, sets);
   };
   const std::optional<ByMotion> gap = fitted(kGap);
   if (!gap || gap->model.find(kGap)->at("gap") < least_gap(gap->model.data)) return;
@@ -135,11 +149,6 @@ void compare_spring_with_gap_by_motion(Diagnosis& diagnosis, const sim::DriveDes
   diagnosis.verdict.explanation +=
       " While the axis slides, a gap and a spring hardly differ. At reversals they do, and a gap predicts the motion "
       "better.";
-  for (const std::string& kind : diagnosis.screen->best().kinds)
-    if (kind != kSpring && gap->model.find(kind) == nullptr)
-      diagnosis.verdict.explanation +=
-          fmt::format(" {}, found beside the spring, does not improve the prediction with a gap and is withdrawn.",
-                      sim::find_effect(kind)->title);
   exchange_spring(gap->model, diagnosis);
 }
 

@@ -259,9 +259,9 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) {
         // With the effects of the balance, the motion may no longer be limited by model error.
-        const bool ends_here = screen->chosen.empty() || screen->rows.steady;
-        return ends_here || !may_be_completed(*diagnosis, split.validation) ? *std::move(diagnosis)
-                                                                            : completed(*std::move(diagnosis));
+        const bool ends_here =
+            screen->chosen.empty() || screen->rows.steady || !may_be_completed(*diagnosis, split.validation);
+        return ends_here ? *std::move(diagnosis) : completed(*std::move(diagnosis));
       }
   }
   const double short_s = rough_window_s(training);

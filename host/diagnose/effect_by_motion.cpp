@@ -34,12 +34,12 @@ std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo
 }  // namespace
 
 std::optional<EffectByMotion> fit_effect_by_motion(const sim::EffectInfo& effect, const sim::DriveDescription& model,
-                                                   const Measurements& measured, const PreparedSets& split) {
-  std::optional<EffectByMotion> fitted = fitted_on(with_base_fitted(split), effect, model);
-  if (!fitted || !is_rough(error_of(sim::Drive(fitted->best.model), fitted->sets.validation))) return fitted;
+                                                   const Measurements& measured, const PreparedSets& fitted) {
+  std::optional<EffectByMotion> found = fitted_on(fitted, effect, model);
+  if (!found || !is_rough(error_of(sim::Drive(found->best.model), found->sets.validation))) return found;
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   return fitted_on(prepare_sets(model, training, validation, rough_window_s(training),
-                                rough_measure(fitted->best.model, training, validation)),
+                                rough_measure(found->best.model, training, validation)),
                    effect, model);
 }
 

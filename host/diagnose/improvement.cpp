@@ -239,7 +239,7 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
   const PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
   if (std::optional<Addition> by_effort = add_by_effort(model, kind, split)) return *by_effort;
-  std::optional<EffectByMotion> fitted = fit_effect_by_motion(*info, model, measured, split);
+  std::optional<EffectByMotion> fitted = fit_effect_by_motion(*info, model, measured, with_base_fitted(split));
   if (!fitted)
     throw Failure(
         ExitCode::refused,

@@ -38,7 +38,6 @@ bool promises_a_third(const Errors& base, const Errors& pair) {
          explained_share(base.validation, pair.validation) > kMost;
 }
 
-constexpr double kAsGood = 1.1;
 constexpr FitOptions kWithoutOne{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 
 sim::DriveDescription without(const sim::DriveDescription& model, const std::string& kind, const RecordSet& training) {
