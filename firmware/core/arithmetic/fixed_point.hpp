@@ -50,7 +50,8 @@ class Fixed {
   friend constexpr Fixed operator*(Fixed a, Fixed b) {
     return from_raw(shift_down<fraction_bits>(std::int64_t{a.raw_} * b.raw_));
   }
-  /// A divisor of 0 gives the limit on the dividend's side. Divides 64 bits: not for the control interrupt.
+  /// Rounded towards zero. A divisor of 0 gives the limit on the dividend's side. Divides 64 bits: not for the control
+  /// interrupt.
   friend constexpr Fixed operator/(Fixed a, Fixed b) {
     if (b.raw_ == 0) return from_raw(a.raw_ < 0 ? kLeast : kMost);
     return from_raw(saturate((std::int64_t{a.raw_} << fraction_bits) / b.raw_));
