@@ -140,18 +140,26 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
 }
 
 /// Divides the friction of a drive with a second mass between motor and load if that is better: friction on the motor
-/// side can make a spring look like a gap.
-void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets) {
+/// side can make a spring look like a gap. Both forms are fitted to the whole training set from the same values, so
+/// that the parameter is not credited with what the fit alone gains. `base`: the model that the candidates extend.
+void split_friction(std::vector<Candidate>& candidates, const sim::DriveDescription& base, const PreparedSets& sets) {
   constexpr double kStart = 0.9, kBetter = 0.98;
   for (Candidate& candidate : candidates) {
     sim::DriveDescription model = candidate.model;
     const auto second = std::ranges::find_if(
         model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
     if (second == model.effects.end() || second->has("load_friction")) continue;
+    const auto fitted = [&](const sim::DriveDescription& start) {
+      return judged(candidate.kinds, fit_model(start, sets.training, kWithoutOne).model, base, sets.training,
+                    sets.validation);
+    };
+    Candidate whole = fitted(model);
     second->parameters["load_friction"] = kStart;
-    Candidate split = judged(candidate.kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base,
-                             sets.training, sets.validation);
-    if (split.left < kBetter * candidate.left && is_physical(split)) candidate = std::move(split);
+    Candidate split = fitted(model);
+    if (whole.left < candidate.left) candidate = std::move(whole);
+    if (split.training.robust < kBetter * candidate.training.robust && split.left < candidate.left &&
+        is_physical(split))
+      candidate = std::move(split);
   }
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
 }
@@ -159,8 +167,9 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
 /// A spring is a gap of width zero, so every gap is compared with a spring that is fitted equally well. The spring
 /// replaces the gap if the encoder does not show the gap, or if the spring predicts the held-back records at least as
 /// well. If `absent` contains the spring, nothing is replaced. Of two candidates with the same effects, the better one
-/// remains.
-void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets& sets) {
+/// remains. `base`: the model that the candidates extend.
+void compare_with_springs(std::vector<Candidate>& candidates, const sim::DriveDescription& base,
+                          const PreparedSets& sets) {
   if (std::ranges::find(sets.absent, "compliance") != sets.absent.end()) return;
   std::vector<Candidate> springs;
   std::erase_if(candidates, [&](const Candidate& candidate) {
@@ -176,7 +185,7 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
     std::vector<std::string> kinds = candidate.kinds;
     std::ranges::replace(kinds, "backlash", "compliance");
     springs.push_back(
-        judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training, sets.validation));
+        judged(kinds, fit_model(model, sets.training, kWithoutOne).model, base, sets.training, sets.validation));
     return is_unseen || springs.back().validation.robust <= candidate.validation.robust;
   });
   if (springs.empty()) return;
@@ -200,8 +209,8 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
                           double to) {
     std::vector<Candidate> candidates =
         search_candidates(model, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
-    split_friction(candidates, sets);
-    compare_with_springs(candidates, sets);
+    split_friction(candidates, model, sets);
+    compare_with_springs(candidates, model, sets);
     return candidates;
   };
   const auto renew = [&sets](const sim::DriveDescription& model) {
@@ -231,7 +240,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   renew(pair->model);
   Candidate best_pair = *pair;
   std::vector<Candidate> exchanged = with_one_exchanged(best_pair, found.singles, sets);
-  compare_with_springs(exchanged, sets);
+  compare_with_springs(exchanged, sets.base, sets);
   for (const Candidate& other : exchanged)
     if (cost(other) < cost(best_pair)) best_pair = other;
   std::ranges::move(exchanged, std::back_inserter(found.pairs));
