@@ -336,7 +336,9 @@ int main(int argc, char** argv) {
     const auto hides = [&](const char* kind) { return std::count(kinds.begin(), kinds.end(), kind) > 0; };
     if ((curved || hides("friction_lag") || hides("dwell_stiction")) && !hides("stribeck"))
       d.extra = r.between(0.25, 0.5), d.fade = r.between(2, 5);
-    if (hides("coulomb_asymmetry")) d.backward = d.forward;
+    // A given model with a level for each direction explains a force of one sign by them, so there it has one.
+    const bool one_level = hides("coulomb_asymmetry") || hides("constant_torque") || hides("dac_offset");
+    if (one_level) d.backward = d.forward;
     for (const string& kind : kinds) d.hidden[kind] = sizes(kind, r);
 
     const string folder = string(argv[4]) + "/case-" + (n < 10 ? "0" : "") + std::to_string(n);
@@ -392,7 +394,7 @@ int main(int argc, char** argv) {
           << "\n[[effect]]\nkind = \"viscous\"\nB_Nm_s_per_rad = " << d.viscous * r.between(0.95, 1.05)
           << "\n[[effect]]\nkind = \"coulomb\"\n";
     const double f = d.forward * r.between(0.97, 1.03),
-                 b = two_levels && !hides("coulomb_asymmetry") ? d.backward * r.between(0.97, 1.03) : f;
+                 b = two_levels && !one_level ? d.backward * r.between(0.97, 1.03) : f;
     if (f == b)
       model << "level_Nm = " << f << "\n";
     else
