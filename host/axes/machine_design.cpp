@@ -1,6 +1,7 @@
 #include "host/axes/machine_design.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -180,12 +181,33 @@ void limit(LoopSet& set, const std::vector<AxisTask>& tasks, LimitWishes wishes)
   }
 }
 
-std::string reason(const std::vector<AxisTask>& tasks, const Found& found, const LoopAim& aim) {
-  if (!aim.modulus && !aim.crossover_Hz) return fmt::format("--fc {:g} Hz, as asked", found.loop.bandwidth_Hz);
-  if (!found.loop.stopped_by) return "the control rate: pole placement on a rigid drive is good for 0.12 of it";
+/// What an axis that stops the matched loop below its own bandwidth has to share: the filters, if it would go further
+/// with its own ones, or the estimator.
+std::string shared_cause(const LoopTask& task, const AxisLoop& own, const LoopAim& aim, double matched_Hz) {
+  const bool by_filters = highest_bandwidth({task}, aim, own.filters).bandwidth_Hz > matched_Hz;
+  return fmt::format("with the {} of all axes; its own loop reaches {:.3g} Hz", by_filters ? "filters" : "estimator",
+                     own.design.used.bandwidth_Hz);
+}
+
+std::string reason(const std::vector<LoopTask>& drives, const std::vector<AxisLoop>& own, const Found& found,
+                   const LoopAim& aim) {
+  constexpr double kFaster = 1.05;  // beyond the step of the search
+  const double matched_Hz = found.loop.bandwidth_Hz;
+  if (!aim.modulus && !aim.crossover_Hz) return fmt::format("--fc {:g} Hz, as asked", matched_Hz);
+  if (found.loop.stopped_by.empty()) return "the control rate: pole placement on a rigid drive is good for 0.12 of it";
+  std::vector<std::string> names, shared;
+  for (const std::size_t i : found.loop.stopped_by) {
+    names.push_back(drives[i].model.name);
+    if (own[i].design.used.bandwidth_Hz > kFaster * matched_Hz)
+      shared.push_back(shared_cause(drives[i], own[i], aim, matched_Hz));
+  }
+  const bool is_one = names.size() == 1;
   const std::string limit = aim.modulus ? fmt::format("a modulus margin of {:g}", *aim.modulus)
                                         : fmt::format("a crossover of {:g} Hz", *aim.crossover_Hz);
-  return fmt::format("axis {}, which keeps {} no further", tasks[*found.loop.stopped_by].model.name, limit);
+  const std::string said = fmt::format("{} {}, which {} {} no further", is_one ? "axis" : "axes",
+                                       fmt::join(names, " and "), is_one ? "keeps" : "keep", limit);
+  if (shared.size() < names.size()) return said;
+  return said + (is_one ? " " + shared.front() : " with the filters or the estimator of all axes");
 }
 
 nlohmann::json set_json(const LoopSet& set) {
@@ -218,7 +240,6 @@ MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOpt
   std::vector<LoopTask> all;
   for (std::size_t i = 0; i < tasks.size(); ++i) all.push_back({controlled[i], equal[i], drives[i]});
   const Found common = best_loop(all, tasks, aim, options);
-  machine.limited_by = reason(tasks, common, aim);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     machine.matched.axes.push_back(
         loop_of(models[i], controlled[i], equal[i], common.loop.bandwidth_Hz, common.filters, drives[i]));
@@ -226,6 +247,7 @@ MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOpt
     machine.own.axes.push_back(
         loop_of(tasks[i].model, tasks[i].model, options, best.loop.bandwidth_Hz, best.filters, drives[i]));
   }
+  machine.limited_by = reason(all, machine.own.axes, common, aim);
   for (LoopSet* set : {&machine.matched, &machine.own}) {
     limit(*set, tasks, limits);
     forecast(*set, tasks);

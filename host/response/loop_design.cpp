@@ -51,16 +51,16 @@ HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim
   const double period_s = drives.front().model.data.sample_period_s;
   for (double f = kLowest_Hz; f < kHighestShare / period_s; f *= kStep) {
     double modulus = HUGE_VAL;
-    std::optional<std::size_t> stopped_by;
+    std::vector<std::size_t> stopped_by;
     for (std::size_t i = 0; i < drives.size(); ++i)
-      if (!keeps(drives[i], aim, filters, f, modulus) && !stopped_by) stopped_by = i;
+      if (!keeps(drives[i], aim, filters, f, modulus)) stopped_by.push_back(i);
     found.best_modulus = std::max(found.best_modulus, modulus);
-    if (stopped_by) {
-      if (!found.stopped_by) found.stopped_by = stopped_by;
+    if (!stopped_by.empty()) {
+      if (found.stopped_by.empty()) found.stopped_by = stopped_by;
       continue;
     }
     found.bandwidth_Hz = f;
-    found.stopped_by.reset();
+    found.stopped_by.clear();
   }
   return found;
 }

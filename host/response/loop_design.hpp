@@ -33,9 +33,9 @@ struct LoopTask {
 };
 
 struct HighestLoop {
-  double bandwidth_Hz = 0.0;                ///< 0 if no bandwidth meets the requirements
-  double best_modulus = 0.0;                ///< largest over all bandwidths tried; of several drives, the smallest
-  std::optional<std::size_t> stopped_by{};  ///< the drive that fails at the next bandwidth
+  double bandwidth_Hz = 0.0;              ///< 0 if no bandwidth meets the requirements
+  double best_modulus = 0.0;              ///< largest over all bandwidths tried; of several drives, the smallest
+  std::vector<std::size_t> stopped_by{};  ///< every drive that fails at the next bandwidth, in ascending order
 };
 
 /// The highest bandwidth at which all drives meet the requirements with these filters.

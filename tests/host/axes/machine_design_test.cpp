@@ -134,9 +134,29 @@ TEST(MachineDesign, TheSlowestAxisSetsThePace) {
   EXPECT_EQ(bandwidth(design.matched.axes[0]), bandwidth(design.matched.axes[1]));
   EXPECT_GT(bandwidth(design.own.axes[0]), 1.2 * bandwidth(design.own.axes[1]));
   EXPECT_NEAR(bandwidth(design.matched.axes[0]), bandwidth(design.own.axes[1]), 0.15 * bandwidth(design.own.axes[1]));
-  EXPECT_NE(design.limited_by.find("axis y"), std::string::npos) << design.limited_by;
+  EXPECT_EQ(design.limited_by, "axis y, which keeps a modulus margin of 0.4 no further");
+  EXPECT_EQ(designed({machine()[1], machine()[0]}, true).limited_by, design.limited_by) << "in the other order";
   for (const host::LoopSet* set : {&design.matched, &design.own})
     for (const host::AxisLoop& loop : set->axes) EXPECT_GE(*loop.modulus, 0.4) << loop.model.name;
+}
+
+/// Catches the first of equal axes named alone, as if the other allowed more.
+TEST(MachineDesign, EqualAxesLimitItTogether) {
+  const Tasks equal{{drive("x", 1.0, 8e-4), {}}, {drive("y", 1.0, 8e-4), {}}};
+  EXPECT_EQ(designed(equal, true).limited_by, "axes x and y, which keep a modulus margin of 0.4 no further");
+}
+
+/// Catches an axis that is called slow although only the estimator without a tachometer, which its neighbour needs,
+/// slows it down.
+TEST(MachineDesign, SaysThatAnAxisIsLimitedByWhatItShares) {
+  Tasks tasks{{drive("x", 1.0, 8e-4), {}}, {drive("y", 1.0, 3e-4), {}}};
+  tasks[1].model.data.tach_noise_variance.reset();
+  const host::MachineDesign design = designed(tasks, true);
+  const double matched_Hz = design.matched.axes[0].design.used.bandwidth_Hz;
+  ASSERT_GT(design.own.axes[0].design.used.bandwidth_Hz, 1.1 * matched_Hz);
+  EXPECT_NE(design.limited_by.find("axis x, which keeps a modulus margin of 0.4 no further with the estimator"),
+            std::string::npos)
+      << design.limited_by;
 }
 
 TEST(MachineDesign, EstimatorsHaveEqualPoles) {
