@@ -2,6 +2,7 @@
 // catalogue page, diagnosis and tests.
 #pragma once
 
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -42,10 +43,22 @@ struct ParameterInfo {
   Scale scale = Scale::unity;
   std::vector<double> starts{};  ///< start values of a fit, in units of `scale`; several for several local minima
   bool optional = false;         ///< may be absent from a model file
-  bool rigid_at_upper = false;   ///< at the upper bound this part of the effect is rigid, that is, absent
+  bool absent_at_lower = false;  ///< at the lower bound this part of the effect is absent: an undamped spring
+  bool absent_at_upper = false;  ///< the same at the upper bound: a contact without a spring
   std::string_view pair_of{};  ///< set for a parameter that gives both directions: replaces the pair positive/negative
 
   std::string_view key(DriveKind kind) const { return kind == DriveKind::rotary ? rotary_key : linear_key; }
+
+  /// Whether a fitted value lies on a bound and is therefore not an estimate. A bound at which this part of the effect
+  /// is absent is a valid value, and so is zero or a lower bound that stands for zero.
+  bool is_stopped_at(double value) const {
+    constexpr double kNear = 1e-3, kStandsForZero = 5e-4;  // of the bound; of the upper bound
+    const auto lies_on = [&](double bound) {
+      return std::abs(bound) > kStandsForZero * std::abs(upper) && std::isfinite(bound) &&
+             std::abs(value - bound) <= kNear * std::abs(bound);
+    };
+    return (lies_on(lower) && !absent_at_lower) || (lies_on(upper) && !absent_at_upper);
+  }
 };
 
 /// The place of an effect in the drive, which determines the searches that include it. Effects on the `table` are

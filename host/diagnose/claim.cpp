@@ -62,20 +62,13 @@ std::size_t parameters_of(const JudgedCandidate& candidate) {
 
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
-  constexpr double kNear = 1e-3;
-  constexpr double kStandsForZero = 0.0005;  // of the upper bound; every drive has a damping above 0.001
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
     if (entry == nullptr) continue;
     for (const auto& [id, value] : entry->parameters) {
       const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
-      if (info == nullptr) continue;
-      const auto is_on = [info, value = value](double bound) {
-        return std::abs(bound) > kStandsForZero * std::abs(info->upper) && std::isfinite(bound) &&
-               std::abs(value - bound) <= kNear * std::abs(bound);
-      };
-      if (is_on(info->lower) || (is_on(info->upper) && !info->rigid_at_upper))
+      if (info != nullptr && info->is_stopped_at(value))
         found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
     }
   }

@@ -28,14 +28,6 @@ bool is_inside(double value, const sim::ParameterInfo& info) { return value >= i
 /// Parameters of either sign: components of a phase, offsets.
 bool has_either_sign(const sim::ParameterInfo& info) { return info.lower < 0.0 && info.upper > 0.0; }
 
-/// A value on a bound of the fit is not an estimate. A bound at zero, or at which a spring is rigid, is allowed,
-/// because this part of the effect is then absent.
-bool is_on_bound(double value, const sim::ParameterInfo& info) {
-  constexpr double kOn = 1e-3;
-  const auto on = [value](double bound) { return bound != 0.0 && std::abs(value - bound) <= kOn * std::abs(bound); };
-  return on(info.lower) || (on(info.upper) && !info.rigid_at_upper);
-}
-
 /// The meaning of a forbidden sign; may be empty.
 std::string_view meaning_of(const sim::EffectInfo& effect, const sim::ParameterInfo& info, double value) {
   if (effect.kind == "inertia" && value <= 0.0)
@@ -84,7 +76,7 @@ class Examiner {
       return;
     }
     const bool fitted = interval.has_value() || !entry.from.empty();
-    if (fitted && is_on_bound(value, info))
+    if (fitted && info.is_stopped_at(value))
       doubt(effect.kind, true,
             "{} = {:.4g} lies on a bound of the fit ({:g} … {:g}), so it is not a valid estimate: the cause is "
             "something else, or the records do not show it",

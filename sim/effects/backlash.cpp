@@ -34,14 +34,15 @@ const EffectInfo backlash{
                     .lower = 5.0,
                     .upper = 300.0,
                     .starts = {60, 150},
-                    .rigid_at_upper = true},
+                    .absent_at_upper = true},
                    {.id = "damping_ratio",
                     .rotary_key = "damping_ratio",
                     .linear_key = "damping_ratio",
                     .doc = "of that mode",
                     .lower = 0.001,
                     .upper = 1.0,
-                    .starts = {0.05, 0.6}},  // a spring behind the gap, or hard contact
+                    .starts = {0.05, 0.6},  // a spring behind the gap, or hard contact
+                    .absent_at_lower = true},
                    {.id = "load_fraction",
                     .rotary_key = "load_fraction",
                     .linear_key = "load_fraction",
