@@ -28,6 +28,13 @@ concept Encoder = requires(T& encoder) {
   { encoder.read() } -> std::same_as<EncoderReading>;
 };
 
+/// An encoder whose line receivers report broken wires. Contract: `is_faulted()` returns at once whether they do,
+/// without debouncing. A broken wire between receivers and board reads as a fault.
+template <typename T>
+concept MonitoredEncoder = Encoder<T> && requires(T& encoder) {
+  { encoder.is_faulted() } -> std::same_as<bool>;
+};
+
 /// An encoder with an index pulse. Contract: `read_index()` returns at once, and clears what it has reported.
 template <typename T>
 concept IndexedEncoder = Encoder<T> && requires(T& encoder) {

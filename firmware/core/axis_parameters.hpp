@@ -20,14 +20,15 @@ namespace firmware {
 /// and m/s.
 template <typename Scalar>
 struct AxisParameters {
-  Scalar sample_period_s{};       ///< Ts, > 0
-  Scalar lead{};                  ///< rg, mm/rad; 1 for a linear drive; > 0
-  Scalar encoder_resolution{};    ///< dx, mm (m) a count, > 0
-  Scalar dac_resolution_V{};      ///< du, > 0
-  Scalar dac_limit_V{};           ///< output range is -limit..+limit; 2 du .. 2^23 du
-  bool tachometer_fitted = true;  ///< false: the estimate uses the encoder only
-  Scalar tachometer_gain{};       ///< rad/s (m/s) a code
-  Scalar tachometer_offset{};     ///< rad/s (m/s) at code 0, subtracted
+  Scalar sample_period_s{};          ///< Ts, > 0
+  Scalar lead{};                     ///< rg, mm/rad; 1 for a linear drive; > 0
+  Scalar encoder_resolution{};       ///< dx, mm (m) a count, > 0
+  Scalar dac_resolution_V{};         ///< du, > 0
+  Scalar dac_limit_V{};              ///< output range is -limit..+limit; 2 du .. 2^23 du
+  bool tachometer_fitted = true;     ///< false: the estimate uses the encoder only
+  bool encoder_fault_input = false;  ///< the encoder's line receivers report broken wires
+  Scalar tachometer_gain{};          ///< rad/s (m/s) a code
+  Scalar tachometer_offset{};        ///< rad/s (m/s) at code 0, subtracted
 
   DiscreteDrive<Scalar> drive{};
   KalmanGain<Scalar> Kobs{};

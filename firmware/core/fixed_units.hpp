@@ -54,6 +54,7 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.dac_resolution_V = fixed(p.dac_resolution_V / unit.volts);
   q.dac_limit_V = fixed(p.dac_limit_V / unit.volts);
   q.tachometer_fitted = p.tachometer_fitted;
+  q.encoder_fault_input = p.encoder_fault_input;
   q.tachometer_gain = fixed(p.tachometer_gain / unit.velocity);
   q.tachometer_offset = fixed(p.tachometer_offset / unit.velocity);
   q.drive = {.Ad12 = fixed(p.drive.Ad12 * unit.velocity / unit.length),

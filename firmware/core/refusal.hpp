@@ -40,7 +40,7 @@ enum class Refusal : std::uint16_t {
   backlash_crossing = 226,         ///< on, and not 1..4096 samples
   homing = 241,           ///< not by an operator, and a velocity 0, or creep velocity or a distance not above 0
   amplifier_ready = 247,  ///< the ready input on, but no time for it; or a time below 0
-  brake_feedback = 248,   ///< a brake, but no tachometer to detect a dead encoder at rest
+  brake_feedback = 248,   ///< a brake, but neither tachometer nor fault input to detect a dead encoder at rest
   index_spacing = 251,    ///< below 0
   filters = 273,          ///< on, and not below 0.45 of the rate; or the loop is not stable with them
   pitch_crossing = 289,   ///< on, and not 1..4096 samples

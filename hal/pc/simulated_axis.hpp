@@ -59,6 +59,7 @@ class SimulatedAxis {
     SimulatedEncoder(sim::Plant& plant, const AxisWiring& wiring)
         : plant_(plant), wiring_(wiring), last_turn_(turn_of(plant.encoder_counts())) {}
     EncoderReading read() { return {static_cast<std::uint32_t>(plant_.encoder_counts()), true}; }
+    bool is_faulted() const { return false; }
 
     /// The last of the pulses passed since the last call.
     IndexReading read_index() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hal/encoder.hpp"
+#include "hal/stm32f4/pin.hpp"
 #include "hal/stm32f4/registers.hpp"
 
 namespace hal::stm32f4 {
@@ -12,14 +13,17 @@ namespace hal::stm32f4 {
 ///
 /// A stream of DMA1 copies the counter at a compare event of the control timer. So the control interrupt's delay does
 /// not change the position that it reads: the transfer waits at most for other accesses to the bus, 0.2 us.
+///
+/// The receivers' fault output is high while a wire is broken. An open pin reads high too.
 class EncoderTimer {
  public:
   /// `probe_trigger`: the input, ITR0 to ITR3, at which the probe's timer reaches this one (18.4.3). `latch`: the
   /// stream of DMA1 whose channel 5 is a compare event of TIM3: 4 or 5 (table 42).
-  EncoderTimer(Timer& registers, std::uint32_t probe_trigger, DmaStream& latch)
-      : registers_(registers), probe_trigger_(probe_trigger), latch_(latch) {}
+  EncoderTimer(Timer& registers, std::uint32_t probe_trigger, DmaStream& latch, Pin receivers_fault)
+      : registers_(registers), probe_trigger_(probe_trigger), latch_(latch), receivers_fault_(receivers_fault) {}
 
   void start() {
+    receivers_fault_.make_input(Pull::up);
     registers_.CCMR1 = Timer::kFilteredPin | Timer::kFilteredPin << 8;
     registers_.CCMR2 = Timer::kFilteredPin | Timer::kInternalTrigger << 8;
     registers_.CCER = Timer::kCapture3Enable | Timer::kCapture4Enable;
@@ -32,6 +36,8 @@ class EncoderTimer {
 
   /// The counter in this control period. A bus error ends the stream (10.3.18).
   EncoderReading read() { return {.counts = latched_, .valid = (latch_.CR & DmaStream::kEnable) != 0}; }
+
+  bool is_faulted() { return receivers_fault_.read(); }
 
   IndexReading read_index() {
     const std::uint32_t status = registers_.SR;
@@ -60,8 +66,9 @@ class EncoderTimer {
   Timer& registers_;
   std::uint32_t probe_trigger_;
   DmaStream& latch_;
+  Pin receivers_fault_;
   volatile std::uint32_t latched_ = 0;  // written by DMA
 };
-static_assert(IndexedEncoder<EncoderTimer> && LatchedEncoder<EncoderTimer>);
+static_assert(IndexedEncoder<EncoderTimer> && LatchedEncoder<EncoderTimer> && MonitoredEncoder<EncoderTimer>);
 
 }  // namespace hal::stm32f4

@@ -80,8 +80,9 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
       return "with these notch and low_pass filters the loop would be unstable, or one of them is not below 0.45 of "
              "the control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
     case Refusal::brake_feedback:
-      return "an axis with a brake may fall, and at rest only a tachometer reveals a dead encoder: fit one "
-             "(tachometer.fitted), or leave the brake to the amplifier (brake.fitted = false)";
+      return "an axis with a brake may fall, and at rest only a tachometer or the fault output of the encoder's "
+             "receivers reveals a dead encoder: fit one (tachometer.fitted or encoder.fault_input), or leave the brake "
+             "to the amplifier (brake.fitted = false)";
     case Refusal::following_error:
       return following_error_relation(p);
     case Refusal::disagreement:

@@ -54,12 +54,15 @@ TEST(AxisInputs, SparksTripNothingAndWhatStaysDoes) {
       {"positive end", [](auto& io, bool on) { io.limits().state.positive_end = on; },
        AxisFault::limit_switch_positive},
       {"drive fault", [](auto& io, bool on) { io.drive_enable().faulted = on; }, AxisFault::drive_fault},
+      {"encoder's receivers", [](auto& io, bool on) { io.encoder().faulted = on; }, AxisFault::encoder_invalid},
       {"not ready", [](auto& io, bool on) { io.drive_enable().ready = !on; }, AxisFault::amplifier_not_ready},
   };
   for (const Line& line : lines) {
     auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
-    p.sequence.ready_input = true;
-    p.sequence.amplifier_wait = 10;
+    // An optional input is the only one that is wired.
+    p.sequence.ready_input = line.fault == AxisFault::amplifier_not_ready;
+    p.sequence.amplifier_wait = p.sequence.ready_input ? 10 : 0;
+    p.encoder_fault_input = line.fault == AxisFault::encoder_invalid;
     DrivenAxis axis(p);
     axis.step();
     axis.step();

@@ -125,6 +125,59 @@ TEST_F(SensorStop, ADeadEncoderLeavesTheTachometer) {
   }
 }
 
+/// The sensors disagree before the receivers' report has passed its filter. The unfiltered report decides which of them
+/// is dead.
+TEST_F(SensorStop, ReceiversThatReportABrokenWireDecideWhichSensorIsDead) {
+  for (const bool is_wired : {false, true}) {
+    auto p = parameters();
+    p.encoder_fault_input = is_wired;
+    DrivenAxis axis(p);
+    std::uint32_t at = 0;
+    const Stop found = stop(axis, 250.0f, [&](DrivenAxis& a, int k) {
+      if (k == 0) at = a.io.encoder().reading.counts;
+      a.io.encoder().reading.counts = at;
+      a.io.encoder().faulted = true;
+    });
+    EXPECT_EQ(axis.axis.fault(), is_wired ? AxisFault::encoder_invalid : AxisFault::encoder_jump);
+    expect_ramp(found, 250.0);
+  }
+}
+
+/// 2 V of load are held without a tachometer, the encoder is unplugged, and the load changes by 0.8 V.
+TEST_F(SensorStop, AnUnpluggedEncoderAtRestUnderLoadIsFoundByItsReceivers) {
+  for (const bool is_wired : {false, true}) {
+    auto p = parameters();
+    p.tachometer_fitted = false;
+    p.disturbance_cancellation_on = true;
+    p.encoder_fault_input = is_wired;
+    p.sequence.brake_fitted = is_wired;  // refused otherwise
+    DrivenAxis axis(p);
+    for (int k = 0; k < 3000; ++k) {
+      axis.stuck_V = k < 2000 ? -0.001 * k : -2.0;
+      axis.step();
+    }
+    ASSERT_EQ(axis.axis.fault(), AxisFault::none);
+    const double held_mm = axis.at_mm();
+    const std::uint32_t at = axis.io.encoder().reading.counts;
+    axis.stuck_V = -2.8;
+    axis.io.encoder().faulted = true;
+    int samples = 0;
+    for (; samples < 3000 && axis.axis.fault() == AxisFault::none; ++samples) {
+      axis.io.encoder().reading.counts = at;
+      axis.step();
+    }
+    if (!is_wired) {
+      EXPECT_GT(std::abs(axis.at_mm() - held_mm), 100.0) << "what does the input prevent?";
+      continue;
+    }
+    EXPECT_EQ(axis.axis.fault(), AxisFault::encoder_invalid);
+    EXPECT_LE(samples, 3);
+    EXPECT_LT(std::abs(axis.at_mm() - held_mm), 0.1);
+    EXPECT_FALSE(axis.io.drive_enable().on);
+    EXPECT_FALSE(axis.io.drive_enable().brake_released);
+  }
+}
+
 TEST_F(SensorStop, WithoutATachometerADeadEncoderDropsTheEnable) {
   auto p = parameters();
   p.tachometer_fitted = false;

@@ -115,6 +115,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.dac_resolution_V = v.get<"drive.dac_resolution">();
   p.dac_limit_V = v.get<"drive.dac_limit">();
   p.tachometer_fitted = v.get<"tachometer.fitted">();
+  p.encoder_fault_input = v.get<"encoder.fault_input">();
   const float read_per_true = v.get<"calibration.tachometer_gain">();
   const float true_per_read = 1.0F / read_per_true;
   p.tachometer_gain = v.get<"tachometer.gain">() * true_per_read;

@@ -28,6 +28,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
   p.dac_resolution_V = v.get<"drive.dac_resolution">();
   p.dac_limit_V = v.get<"drive.dac_limit">();
   p.tachometer_fitted = v.get<"tachometer.fitted">() && !(velocity < 0);
+  p.encoder_fault_input = v.get<"encoder.fault_input">();
   p.tachometer_gain = v.get<"tachometer.gain">();
   p.tachometer_offset = v.get<"tachometer.offset">();
   const FixedUnits<float> unit(p);

@@ -177,6 +177,9 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {250, axis, "brake.apply_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
      "until an applied brake holds: the enable stays on until then"},
 
+    {252, axis, "encoder.fault_input", toggle, "", "", 0, 1, 0, while_disabled,
+     "the fault output of the encoder's line receivers is wired: a broken wire stops the axis"},
+
     // For an excitation in open loop: app/limit_reply.hpp.
     {256, axis, "unfitted.volts", real, "V", "V", 0, 20, 6, while_disabled,
      "largest command of an experiment while the axis is not fitted"},

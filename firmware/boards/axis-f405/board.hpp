@@ -39,6 +39,7 @@ class BoardAxisHal {
     hal::stm32f4::Timer& encoder;
     std::uint32_t probe_trigger;     ///< as for EncoderTimer
     hal::stm32f4::DmaStream& latch;  ///< likewise
+    hal::stm32f4::Pin encoder_fault;
     const hal::stm32f4::TachometerSamples& samples;
     std::uint32_t tachometer_channel;
     Converter::Channel& dac;
@@ -46,7 +47,7 @@ class BoardAxisHal {
     hal::stm32f4::SwitchInputs::Pins switches;
   };
   explicit BoardAxisHal(const Wiring& w)
-      : encoder_(w.encoder, w.probe_trigger, w.latch),
+      : encoder_(w.encoder, w.probe_trigger, w.latch, w.encoder_fault),
         tachometer_(w.samples, w.tachometer_channel),
         dac_(w.dac),
         lines_(w.lines),
@@ -148,6 +149,7 @@ class Board {
       {.encoder = hal::stm32f4::timer2(),
        .probe_trigger = 3,
        .latch = hal::stm32f4::dma1().stream[4],
+       .encoder_fault = pins::encoder_x_fault(),
        .samples = samples_,
        .tachometer_channel = 0,
        .dac = converter_.a(),
@@ -162,6 +164,7 @@ class Board {
       {.encoder = hal::stm32f4::timer5(),
        .probe_trigger = 2,
        .latch = hal::stm32f4::dma1().stream[5],
+       .encoder_fault = pins::encoder_y_fault(),
        .samples = samples_,
        .tachometer_channel = 1,
        .dac = converter_.b(),

@@ -16,6 +16,8 @@ inline Pin encoder_y_index() { return {gpio_a(), 2}; }
 inline Pin encoder_x_a() { return {gpio_a(), 15}; }
 inline Pin encoder_x_b() { return {gpio_b(), 3}; }
 inline Pin encoder_x_index() { return {gpio_b(), 10}; }
+inline Pin encoder_x_fault() { return {gpio_c(), 13}; }
+inline Pin encoder_y_fault() { return {gpio_c(), 14}; }
 inline Pin dac_select() { return {gpio_a(), 4}; }
 inline Pin dac_clock() { return {gpio_a(), 5}; }
 inline Pin dac_data_in() { return {gpio_a(), 6}; }

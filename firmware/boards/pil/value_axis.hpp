@@ -16,7 +16,9 @@ class ValueAxis {
   struct Encoder {
     hal::EncoderReading reading;
     hal::IndexReading index;
+    bool faulted = false;
     hal::EncoderReading read() const { return {reading.counts, reading.valid}; }
+    bool is_faulted() const { return faulted; }
     hal::IndexReading read_index() { return std::exchange(index, {}); }
   };
   struct Tachometer {

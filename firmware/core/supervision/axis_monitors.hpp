@@ -99,6 +99,7 @@ class AxisMonitors {
   constexpr Scalar high_water() const { return high_water_; }
   constexpr void forget_high_water() { high_water_ = noted_error_ = Scalar(0); }
 
+  constexpr const MonitorLimits<Scalar>& limits() const { return limits_; }
   constexpr const TravelMonitor<Scalar>& travel() const { return travel_; }
   constexpr const EffortMonitor<Scalar>& effort() const { return effort_; }
 

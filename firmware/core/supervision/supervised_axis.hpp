@@ -18,6 +18,7 @@
 #include "firmware/core/supervision/supervised_check.hpp"
 #include "firmware/core/supervision/supervised_hal.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
+#include "firmware/core/supervision/wired_inputs.hpp"
 
 namespace firmware {
 
@@ -48,9 +49,8 @@ class SupervisedAxis {
     return true;
   }
   constexpr void excite(Scalar volts) { axis_.excite(volts); }  ///< as of Axis
-  /// Ready, and the encoder has been at rest for a while: a loop that closes on a moving axis would stop it with a
-  /// jerk. The amplifier's ready contact must be open: a closed contact could not show when the amplifier begins to
-  /// drive.
+  /// Ready, and at rest for a while: a loop that closes on a moving axis would stop it with a jerk. The amplifier's
+  /// ready contact must be open: a closed contact could not show when the amplifier begins to drive.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands() && !says_ready(); }
   constexpr bool stands() const { return standstill_.stands(); }
   /// Slows down, then drops the enable.
@@ -190,6 +190,7 @@ class SupervisedAxis {
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
   constexpr const AxisParameters<Scalar>& parameters() const { return axis_.parameters(); }
   constexpr CountPosition table_reference() const { return axis_.table_reference(); }
+  constexpr const Axis<Scalar, Hal>& law() const { return axis_; }
   constexpr const AxisMonitors<Scalar>& monitors() const { return monitors_; }
   constexpr const CaptureRing<Scalar>& capture() const { return capture_; }
   constexpr Hal& hal() const { return hal_; }
@@ -219,8 +220,8 @@ class SupervisedAxis {
     homing_.configure(parameters.homing);
     sequence_.configure(parameters.sequence);
     index_.configure(parameters.monitors.index_spacing);
-    for (InputFilter* input : {&drive_fault_, &drive_unready_, &home_switch_})
-      input->configure(parameters.monitors.input_samples);
+    inputs_.configure(parameters);
+    for (InputFilter* input : {&drive_fault_, &home_switch_}) input->configure(parameters.monitors.input_samples);
     const MotionLimits limits = motion_limits(parameters);
     increments_.configure(limits);
     stop_end_.configure(limits);
@@ -322,13 +323,13 @@ class SupervisedAxis {
     const AxisFault lines = watch_lines();
     if (lines != AxisFault::none) return lines;
     const AxisFault sensors = monitors_.watch_sensors(seen);
-    if (sensors != AxisFault::none) return sensors;
+    if (sensors != AxisFault::none) return inputs_.says_broken(hal_.encoder()) ? AxisFault::encoder_invalid : sensors;
+    const AxisFault inputs = inputs_.has_any() ? inputs_.watch(hal_, seen.enabled) : AxisFault::none;
+    if (inputs != AxisFault::none) return inputs;
     if (!seen.enabled) {
       standstill_.watch(seen.encoder_counts);
       return monitors_.watch_rest(seen);
     }
-    if (sequence_.parameters().ready_input && drive_unready_.filtered(!is_ready(hal_.drive_enable())))
-      return AxisFault::amplifier_not_ready;
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
   }
@@ -341,7 +342,6 @@ class SupervisedAxis {
   }
 
   [[gnu::noinline]] constexpr AxisFault look_at_index() { return index_.look(hal_.encoder(), axis_.encoder_reading()); }
-
   constexpr bool says_ready() const { return sequence_.parameters().ready_input && is_ready(hal_.drive_enable()); }
 
   /// Without an enable.
@@ -475,7 +475,8 @@ class SupervisedAxis {
   HomingSequence<Scalar> homing_;
   DriveSequence sequence_;
   AxisIndex index_;
-  InputFilter drive_fault_, drive_unready_, home_switch_;
+  WiredInputs inputs_;
+  InputFilter drive_fault_, home_switch_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
   FaultLatch latched_;

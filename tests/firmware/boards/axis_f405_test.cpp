@@ -189,6 +189,9 @@ TEST_F(AxisBoard, EachAxisHasItsOwnLines) {
   chip.port_c.put(3, Outside::low);
   EXPECT_FALSE(board.axis(0).drive_enable().is_ready());
   EXPECT_TRUE(board.axis(1).drive_enable().is_ready());
+  chip.port_c.put(14, Outside::low);
+  EXPECT_TRUE(board.axis(0).encoder().is_faulted());
+  EXPECT_FALSE(board.axis(1).encoder().is_faulted());
   board.axis(1).drive_enable().release_brake(true);
   EXPECT_EQ(chip.port_a.drive(3), Drive::low);
   EXPECT_EQ(chip.port_b.drive(1), Drive::high);

@@ -27,7 +27,7 @@ class Encoder : public driver_test::OnRunningChip {
     return encoder.read();
   }
 
-  EncoderTimer encoder{timer2(), 3, dma1().stream[4]};
+  EncoderTimer encoder{timer2(), 3, dma1().stream[4], {hal::stm32f4::gpio_c(), 13}};
   ControlTimer control{timer3()};
 };
 
@@ -59,6 +59,13 @@ TEST_F(Encoder, ABusErrorIsAnInvalidReading) {
   ASSERT_TRUE(read().valid);
   chip.dma1.fail(4);
   EXPECT_FALSE(read().valid);
+}
+
+/// The receivers' fault output drives the line low while all wires are whole.
+TEST_F(Encoder, AnOpenWireFromTheReceiversIsAFault) {
+  EXPECT_TRUE(encoder.is_faulted());
+  chip.port_c.put(13, parts::Outside::low);
+  EXPECT_FALSE(encoder.is_faulted());
 }
 
 TEST_F(Encoder, TellsTheIndexOnceAndWhetherOneWasMissed) {

@@ -9,6 +9,7 @@ namespace {
 using hal::stm32f4::dma1;
 using hal::stm32f4::EncoderTimer;
 using hal::stm32f4::gpio_b;
+using hal::stm32f4::gpio_c;
 using hal::stm32f4::Pin;
 using hal::stm32f4::ProbeTimer;
 using hal::stm32f4::Pull;
@@ -32,7 +33,7 @@ class Probe : public driver_test::OnRunningChip {
   }
 
   ProbeTimer probe{timer4(), Pin(gpio_b(), 6)};
-  EncoderTimer x{timer2(), 3, dma1().stream[4]}, y{timer5(), 2, dma1().stream[5]};
+  EncoderTimer x{timer2(), 3, dma1().stream[4], {gpio_c(), 13}}, y{timer5(), 2, dma1().stream[5], {gpio_c(), 14}};
 };
 
 /// A bouncing contact closes several times; the probe touched at the first closing.

@@ -88,6 +88,9 @@ TEST(SetRefusal, ABrakeNeedsFeedbackAtRest) {
   EXPECT_TRUE(says(said, "x.brake.fitted")) << said;
   EXPECT_TRUE(says(said, "fit one")) << said;
   EXPECT_EQ(said_after({{"x.brake.fitted", 1}}), "");
+  EXPECT_EQ(said_after(
+                {{"x.brake.fitted", 1}, {"x.tachometer.fitted", 0}, {"x.kalman.k12", 0}, {"x.encoder.fault_input", 1}}),
+            "");
 }
 
 TEST(SetRefusal, ASlowerVelocityLimitNeedsNoOtherMonitors) {
