@@ -8,13 +8,18 @@
 
 namespace firmware {
 
+inline FixedUnits<float> fixed_units(const AxisValues& v) {
+  return {v.get<"drive.sample_period">(), v.get<"drive.lead">(), v.get<"drive.encoder_resolution">(),
+          v.get<"drive.dac_resolution">()};
+}
+
 /// Velocity of a jog, mm/s (m/s).
 template <typename Scalar>
 Scalar to_core_travel_velocity(float velocity, const AxisValues& values) {
   if constexpr (std::is_same_v<Scalar, float>)
     return velocity;
   else
-    return Scalar::from(velocity / FixedUnits<float>(axis_parameters<float>(values)).travel_velocity);
+    return Scalar::from(velocity / fixed_units(values).travel_velocity);
 }
 
 /// Velocity of the drive, rad/s (m/s).
@@ -23,8 +28,7 @@ float from_core_velocity(Scalar velocity, const AxisValues& values) {
   if constexpr (std::is_same_v<Scalar, float>)
     return velocity;
   else
-    return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) *
-           FixedUnits<float>(axis_parameters<float>(values)).velocity;
+    return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) * fixed_units(values).velocity;
 }
 
 }  // namespace firmware

@@ -27,12 +27,15 @@ struct FixedUnits {
   Real travel_velocity;  ///< mm/s (m/s)
   Real volts;
 
+  /// Arguments as in AxisParameters.
+  constexpr FixedUnits(Real sample_period_s, Real lead, Real encoder_resolution, Real dac_resolution_V)
+      : length(encoder_resolution),
+        time_s(sample_period_s),
+        velocity(encoder_resolution / (lead * sample_period_s)),
+        travel_velocity(encoder_resolution / sample_period_s),
+        volts(Real(4096) * dac_resolution_V) {}
   explicit constexpr FixedUnits(const AxisParameters<Real>& p)
-      : length(p.encoder_resolution),
-        time_s(p.sample_period_s),
-        velocity(p.encoder_resolution / (p.lead * p.sample_period_s)),
-        travel_velocity(p.encoder_resolution / p.sample_period_s),
-        volts(Real(4096) * p.dac_resolution_V) {}
+      : FixedUnits(p.sample_period_s, p.lead, p.encoder_resolution, p.dac_resolution_V) {}
 };
 
 /// The same axis in fixed-point units. A value that does not fit is set to the limit of the range, and
