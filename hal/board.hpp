@@ -20,6 +20,7 @@ namespace hal {
 /// exist for microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells
 /// the watchdog that the processor may stop for as long as a sector erase; `end_stall` restores the short time-out.
 /// `restart` restarts the program, and may return before it does. `axis(index)` exists for every index below `kAxes`.
+/// A board that knows the modes of its pins also has `are_pins_kept()`: whether they are still those that were set.
 /// A board whose program can be updated also has `image_flash()`: a Flash of three sectors, the place where programs
 /// run and two slots that keep images.
 template <typename T>

@@ -23,6 +23,7 @@
 #include "firmware/app/period_timing.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/app/refusal_status.hpp"
+#include "firmware/app/settings_watch.hpp"
 #include "firmware/app/store/parameter_store.hpp"
 #include "firmware/app/store/pitch_check.hpp"
 #include "firmware/app/triggered_capture.hpp"
@@ -70,7 +71,8 @@ class BoardApplication {
     axes_.step({.now_us = now_us,
                 .emergency_stop = board_.emergency_stop().is_pressed(),
                 .supply_low = board_.supply().is_low(),
-                .store_damaged = !store_is_usable()});
+                .store_damaged = !store_is_usable(),
+                .settings_changed = settings_.has_found()});
     if constexpr (requires { board_.power_relay(); }) board_.power_relay().close(axes_.may_have_power());
     capture_.take(axes_);
     if (trigger_.is_running()) trigger_.take(axes_);
@@ -108,6 +110,7 @@ class BoardApplication {
       const BoardLimits limits = board_limits(active_);  // the only values that may change while an axis moves
       const typename Board::ControlShutOut guard;
       axes_.board().configure(limits);
+      settings_.begin_anew();
       return Status::ok;
     }
     set_fits_ = true;
@@ -122,6 +125,7 @@ class BoardApplication {
   /// The control interrupt is stopped meanwhile: the outputs are off, and it could not run from stalled flash.
   Status save() {
     if (any_enabled()) return Status::drive_enabled;
+    if (set_crc(active_) != active_crc_) return Status::device_fault;
     const bool was_usable = store_is_usable();
     const typename Board::ControlShutOut guard;
     const SaveResult result = while_stalled([this] { return store_.save(active_); });
@@ -142,6 +146,7 @@ class BoardApplication {
 
   /// Assigns the staged table to the axis, switches it on or off, saves it with the parameters; no drive is enabled.
   Status finish_table(std::uint32_t crc, bool on) {
+    if (set_crc(active_) != active_crc_) return Status::device_fault;
     staged_ = active_;
     staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
     const bool was_usable = store_is_usable();
@@ -254,6 +259,7 @@ class BoardApplication {
         const float most = request.drive_velocity;
         const auto bare = bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), most / request.speed, most);
         if (axes_[axis].configure_bare(bare) != Refusal::none) return Status::malformed;
+        settings_.begin_anew();
       }
     }
     excitation_.start();
@@ -372,9 +378,6 @@ class BoardApplication {
     return trigger_.read(first, payload);
   }
 
-  /// Axes at rest were disabled after host.standing_timeout and have not been enabled since.
-  bool was_left_alone() const { return axes_.board().was_left_alone(); }
-
   /// The state of an axis at one instant.
   AxisStatus axis_status(std::size_t axis) const {
     AxisStatus status;
@@ -386,11 +389,6 @@ class BoardApplication {
     }
     status.velocity = velocity_of_drive(axis, velocity);  // takes long, so the control interrupt runs again
     return status;
-  }
-
-  /// A row that the axis kept from before its fault; false beyond the last.
-  bool fault_row(std::size_t axis, std::size_t row, FaultRowPayload& payload) {
-    return firmware::fault_row(axes_[axis], row, payload);
   }
 
   /// Whether any axis is enabled or about to be moved.
@@ -411,6 +409,7 @@ class BoardApplication {
 
   Board& board() { return board_; }
   Axes& axes() { return axes_; }
+  SettingsWatch<Axes, Board>& settings() { return settings_; }
 
  private:
   static constexpr bool kBoardKeepsCapture = requires(Board & board) { board.capture_rows(); };
@@ -447,6 +446,7 @@ class BoardApplication {
       axes_.board().excuse_pause();
       excitation_.forget();
     }
+    settings_.begin_anew();
     if (!store_is_usable()) return;
     use_tables();
     for (std::size_t axis = 0; axis < kAxes; ++axis)
@@ -492,6 +492,7 @@ class BoardApplication {
   ParameterValues staged_{kAxes};
   std::uint32_t active_crc_ = 0, saved_crc_ = 0;  ///< a copy of the saved set would take more memory
   bool set_fits_ = true;
+  SettingsWatch<Axes, Board> settings_{active_, axes_, board_};
   PeriodTiming timing_;
   volatile std::uint32_t control_periods_ = 0;  // written in the interrupt, read in the background
 };

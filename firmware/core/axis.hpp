@@ -257,6 +257,19 @@ class Axis {
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
   constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
 
+  /// Visits what only configure() changes, for a check of the memory.
+  template <typename Visit>
+  constexpr void each_setting(Visit visit) const {
+    visit(parameters_);
+    visit(limits_);
+    visit(counts_per_sample_per_velocity_);
+    visit(estimator_);
+    visit(feedforward_);
+    visit(stopping_);
+    visit(dac_);
+    visit(friction_);
+  }
+
   /// Travel of the whole reference in the newest sample, kPreviewSamples ahead.
   constexpr Increment newest_increment() const { return preview_.newest(); }
 

@@ -42,7 +42,8 @@ enum class AxisFault : std::uint8_t {
   moved_while_starting = 32,
   homing_index_near_switch = 33,
   drive_not_off = 34,
-  // 35 is reserved: motor and scale disagree, for a board with a second encoder on the table.
+  settings_changed = 35,
+  // 36 is reserved: motor and scale disagree, for a board with a second encoder on the table.
 };
 
 }  // namespace firmware

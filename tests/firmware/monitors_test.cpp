@@ -234,6 +234,7 @@ TEST_F(BoardMonitor, LinesOfTheBoard) {
   EXPECT_EQ(watch.watch({1000, true, false, false}, true), AxisFault::emergency_stop);
   EXPECT_EQ(watch.watch({2000, false, true, false}, true), AxisFault::supply_low);
   EXPECT_EQ(watch.watch({3000, false, false, true}, false), AxisFault::parameter_store_damaged);
+  EXPECT_EQ(watch.watch({4000, false, false, false, true}, false), AxisFault::settings_changed);
   EXPECT_EQ(watch.watch({4000, false, false, false}, true), AxisFault::none);
 }
 

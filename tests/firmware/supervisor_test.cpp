@@ -64,7 +64,8 @@ TEST(FaultTable, NumbersAreFrozen) {
                                      "index_mismatch",
                                      "moved_while_starting",
                                      "homing_index_near_switch",
-                                     "drive_not_off"};
+                                     "drive_not_off",
+                                     "settings_changed"};
   int number = 0;
   for (const char* name : kFrozen) {
     const auto& info = firmware::fault_info(static_cast<AxisFault>(number));

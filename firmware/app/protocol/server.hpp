@@ -29,6 +29,7 @@ class ProtocolServer {
     use_ = use;
     app_.path().poll();
     app_.keep_fault_log();
+    app_.settings().poll();
     if (update_.trial_has_failed()) app_.board().restart();
     if (!usb.is_configured()) {
       reply_waits_ = false;
@@ -276,7 +277,7 @@ class ProtocolServer {
     unsigned flags = app_.has_unsaved_changes() ? kBoardUnsaved : 0;
     if (app_.board().emergency_stop().is_pressed()) flags |= kBoardStopPressed;
     if (app_.capture().is_running()) flags |= kBoardCapturing;
-    if (app_.was_left_alone()) flags |= kBoardLeftAlone;
+    if (app_.axes().board().was_left_alone()) flags |= kBoardLeftAlone;
     if (boot_.simulated) flags |= kBoardSimulated;
     if (boot_.lacks_brown_out_reset) flags |= kBoardBrownOutOff;
     if (app_.any_enabled()) flags |= app_.is_owner(client) ? kBoardYours : kBoardOthers;
@@ -414,7 +415,7 @@ class ProtocolServer {
   Status fault_row(const FaultRowRequest& request, Message& reply) {
     if (request.axis >= kAxes) return Status::malformed;
     FaultRowPayload payload;
-    if (!app_.fault_row(request.axis, request.row, payload)) return Status::no_such_row;
+    if (!firmware::fault_row(app_.axes()[request.axis], request.row, payload)) return Status::no_such_row;
     reply.put(payload);
     return Status::ok;
   }

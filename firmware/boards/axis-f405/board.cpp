@@ -78,6 +78,7 @@ bool Board::start() {
   x_.start();
   y_.start();
   spi_.start();
+  pin_modes_.remember();
   pins::dac_not_clear().set(true);
   const bool converter_answers = converter_.start();
   return clocks_run && converter_answers;

@@ -18,6 +18,7 @@
 #include "hal/stm32f4/encoder_timer.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
 #include "hal/stm32f4/option_bytes.hpp"
+#include "hal/stm32f4/pin_modes.hpp"
 #include "hal/stm32f4/probe_timer.hpp"
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/supply_detector.hpp"
@@ -108,6 +109,8 @@ class Board {
   /// Work of the background: connects to a computer if one is present, reads the D/A converter back, one register at a
   /// time, and restarts it while the outputs are off.
   void watch(bool outputs_off);
+  /// Whether the pins still have the modes that start() set.
+  bool are_pins_kept() const { return pin_modes_.are_kept(); }
   /// Whether the brown-out reset is off, as on a new chip. Then the chip may do anything while its supply falls below
   /// 2.7 V, even erase its flash.
   bool lacks_brown_out_reset() const;
@@ -180,6 +183,7 @@ class Board {
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer13()};
   hal::stm32f4::ProbeTimer probe_{hal::stm32f4::timer4(), pins::probe()};  ///< trigger input of timers 2 and 5
+  hal::stm32f4::PinModes pin_modes_;
   hal::stm32f4::VbusInput vbus_{pins::usb_supply()};
   hal::stm32f4::ChargePump pump_{pins::charge_pump()};
   hal::stm32f4::ControlTimer control_timer_{hal::stm32f4::timer3()};

@@ -16,6 +16,7 @@ struct BoardInputs {
   bool emergency_stop = false;
   bool supply_low = false;
   bool store_damaged = false;
+  bool settings_changed = false;  ///< in memory, without being set
 };
 
 struct BoardLimits {
@@ -45,6 +46,7 @@ class BoardWatch {
     limits_ = limits;
     stop_.configure(limits.input_samples);
   }
+  constexpr const BoardLimits& limits() const { return limits_; }
 
   /// The next control period may be late: the control interrupt was disabled on purpose.
   constexpr void excuse_pause() {
@@ -82,6 +84,7 @@ class BoardWatch {
       if (watch_stop(inputs.emergency_stop, disable)) return AxisFault::emergency_stop;
     }
     if (inputs.supply_low) return AxisFault::supply_low;
+    if (inputs.settings_changed) return AxisFault::settings_changed;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
     if (silent_samples_ < (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples)) {

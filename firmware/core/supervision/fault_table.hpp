@@ -132,6 +132,9 @@ inline constexpr std::array kRows = std::to_array<FaultInfo>({
      "without an enable the amplifier reports ready, or the axis accelerates: the enable's wire is shorted or its "
      "relay welded, the ready contact is, or a weight is not held",
      "cut the amplifier's power; check the enable's wiring, the ready contact and the brake"},
+    {settings_changed, "settings_changed", FaultReaction::drop_enable,
+     "parameters or pin modes in the board's memory are no longer those that were set: a disturbance or a defect",
+     "restart the board; if it comes again, check shield, earth and supply, then replace the board"},
 });
 
 constexpr bool is_complete() {

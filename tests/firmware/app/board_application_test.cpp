@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"
@@ -134,6 +136,47 @@ TYPED_TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
   ASSERT_EQ(again.ask(MessageType::save).status, Status::ok);
   again.run(200);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
+}
+
+/// A changed gain, threshold, friction curve, board limit or value is found while the axis is enabled. Only a restart
+/// clears the fault.
+TYPED_TEST(BoardParameters, ThatChangeByThemselvesStopTheBoard) {
+  using Bench = typename TestFixture::Bench;
+  const auto flip = [](const auto& setting, std::size_t byte) {
+    const_cast<std::byte*>(std::as_bytes(std::span(&setting, 1)).data())[byte] ^= std::byte{4};
+  };
+  const std::function<void(Bench&)> changes[] = {
+      [&](Bench& b) { flip(b.application.axes()[0].parameters().Kc[0], 1); },
+      [&](Bench& b) { flip(b.application.axes()[0].monitors().limits().overspeed, 0); },
+      [&](Bench& b) {
+        b.application.axes()[0].law().each_setting([&](const auto& setting) {
+          if constexpr (sizeof setting > 1000) flip(setting, sizeof setting - 1);
+        });
+      },
+      [&](Bench& b) { flip(b.application.axes().board().limits().standing_samples, 0); },
+      [&](Bench& b) { flip(b.application.active(), sizeof(ParameterValues) / 4); },
+      [&](Bench& b) { flip(b.application.axes()[TestFixture::kAxes - 1].parameters().Kobs[0][0], 3); },
+  };
+  for (const auto& change : changes) {
+    Bench bench;
+    bench.fit_and_enable_x();
+    bench.run(2000);
+    ASSERT_EQ(bench.application.axes()[0].fault(), firmware::AxisFault::none);
+    change(bench);
+    bench.run(1500);
+    EXPECT_EQ(bench.application.axes()[0].fault(), firmware::AxisFault::settings_changed) << &change - changes;
+    EXPECT_FALSE(bench.board.axis(0).drive_enable().is_on());
+    bench.ask(MessageType::clear_faults);
+    bench.run(200);
+    EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
+  }
+}
+
+TYPED_TEST(BoardParameters, ThatHaveChangedByThemselvesAreNotSaved) {
+  typename TestFixture::Bench bench;
+  ASSERT_EQ(bench.download(this->paper_values()).status, Status::ok);
+  const_cast<ParameterValues&>(bench.application.active()).set(place_named("x.feedback.k1"), 40.0F);
+  EXPECT_EQ(bench.ask(MessageType::save).status, Status::device_fault);
 }
 
 TYPED_TEST(BoardMotion, AnAxisThatIsNotFittedStaysOff) {

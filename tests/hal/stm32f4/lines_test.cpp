@@ -3,6 +3,7 @@
 #include "hal/stm32f4/charge_pump.hpp"
 #include "hal/stm32f4/drive_lines.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
+#include "hal/stm32f4/pin_modes.hpp"
 #include "hal/stm32f4/supply_detector.hpp"
 #include "hal/stm32f4/usb_controller.hpp"
 #include "tests/hal/stm32f4/on_chip.hpp"
@@ -176,6 +177,23 @@ TEST_F(Lines, APinKeepsItsNeighboursSettings) {
   EXPECT_TRUE(chip.port_b.is_analogue(5));
   EXPECT_EQ(chip.port_b.function(10), 1);
   EXPECT_EQ(chip.port_b.drive(10), Drive::pulled_up);
+}
+
+TEST_F(Lines, ModesOfPinsAreKeptUntilABitOfThemChanges) {
+  Pin(gpio_b(), 5).make_output(true);
+  PinModes modes;
+  modes.remember();
+  Pin(gpio_b(), 5).set(false);
+  chip.port_c.put(6, Outside::low);
+  EXPECT_TRUE(modes.are_kept()) << "levels are no modes";
+  for (parts::PortPart* port : {&chip.port_a, &chip.port_b, &chip.port_c})
+    for (const std::uint32_t offset : {0x00u, 0x04u, 0x08u, 0x0Cu, 0x20u, 0x24u}) {
+      const std::uint32_t kept = port->read(offset);
+      port->write(offset, kept ^ 1u << 9);
+      EXPECT_FALSE(modes.are_kept()) << offset;
+      port->write(offset, kept);
+      EXPECT_TRUE(modes.are_kept());
+    }
 }
 
 TEST_F(Lines, TheUsbControllerIsClockedAndTakesNoVbusPin) {
