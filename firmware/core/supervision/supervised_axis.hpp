@@ -183,9 +183,7 @@ class SupervisedAxis {
   constexpr const FaultLatch& latched() const { return latched_; }
   /// The amplifier still drives although its enable has dropped. Until clear_fault().
   constexpr bool must_cut_power() const { return must_cut_power_; }
-  constexpr LimitingReasons limiting() const {
-    return {.saturated = axis_.telemetry().saturated, .velocity_limited = limiting_.velocity_limited};
-  }
+  constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
   constexpr bool is_at_rest() const { return axis_.is_at_rest(); }
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
   constexpr const AxisParameters<Scalar>& parameters() const { return axis_.parameters(); }
@@ -275,10 +273,9 @@ class SupervisedAxis {
 
   /// After each step of a homing axis: the next request of the sequence, and its fault.
   [[gnu::noinline]] constexpr AxisFault guide_home() {
-    HomingInputs seen;
-    seen.counts = axis_.telemetry().encoder_counts;
-    seen.at_switch = home_switch_.filtered(hal_.limits().read().home);
-    seen.at_rest = axis_.is_at_rest();
+    HomingInputs seen{.counts = axis_.telemetry().encoder_counts,
+                      .at_switch = home_switch_.filtered(hal_.limits().read().home),
+                      .at_rest = axis_.is_at_rest()};
     if constexpr (kHasIndexPulse<Hal>) {
       const AxisFault miscounted = look_at_index();
       if (miscounted != AxisFault::none) return miscounted;
@@ -324,14 +321,17 @@ class SupervisedAxis {
     if (lines != AxisFault::none) return lines;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return inputs_.says_broken(hal_.encoder()) ? AxisFault::encoder_invalid : sensors;
-    const AxisFault inputs = inputs_.has_any() ? inputs_.watch(hal_, seen.enabled) : AxisFault::none;
+    if (!seen.enabled) return watch_rest(seen);
+    const AxisFault inputs = inputs_.has_any() ? inputs_.watch(hal_, true) : AxisFault::none;
     if (inputs != AxisFault::none) return inputs;
-    if (!seen.enabled) {
-      standstill_.watch(seen.encoder_counts);
-      return monitors_.watch_rest(seen);
-    }
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
+  }
+
+  [[gnu::noinline]] constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
+    standstill_.watch(seen.encoder_counts);
+    const AxisFault inputs = inputs_.watch(hal_, false);
+    return inputs != AxisFault::none ? inputs : monitors_.watch_rest(seen);
   }
 
   /// Faults of amplifier and converter.
