@@ -35,4 +35,13 @@ TEST_P(ShutOut, IsShortWhileASetIsTakenOver) {
   EXPECT_GT(costs["commit_at_standstill_shut_out"].worst, 0);
 }
 
+/// Catches a velocity whose unit is taken from parameters computed for that alone: 1324 instructions in fixed point.
+TEST_P(ShutOut, TheStateOfAnAxisIsToldWithoutComputingItsParameters) {
+  const std::string why = target_test::obstacle(GetParam());
+  if (!why.empty()) GTEST_SKIP() << why;
+  auto costs = target_test::count_instructions(GetParam());
+  EXPECT_GT(costs["axis_status"].mean, 50) << "nothing was told";
+  EXPECT_LE(costs["axis_status"].worst, 150);
+}
+
 }  // namespace

@@ -205,6 +205,15 @@ extern "C" [[noreturn]] void run_board() {
     application.excitation_state();
     application.start_capture({});
   });
+  Cost states;
+  for (int trial = 0; trial < 100; ++trial) {
+    states.add(count([] {
+      const firmware::AxisStatus status = application.axis_status(0);
+      asm volatile("" ::"r"(&status) : "memory");  // all of it is needed
+    }));
+    run(1);
+  }
+  report("axis_status", states);
   report("commit_at_standstill", commits);
   report("commit_at_standstill_shut_out", shut_out);
   hal::qemu::exit_emulator(0);
