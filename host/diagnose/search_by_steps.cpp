@@ -18,9 +18,12 @@ namespace host {
 
 namespace {
 
-/// An effect that helps only at a bound of its physical range stands in for another one. No further effect is added to
-/// it.
-bool is_physical(const Candidate& candidate) { return parameters_on_bound(candidate.model, candidate.kinds).empty(); }
+/// An effect that helps only at a bound of its physical range, or far from the recorded travel, stands in for another
+/// one. No further effect is added to it.
+bool is_physical(const Candidate& candidate, const PreparedSets& sets) {
+  return parameters_on_bound(candidate.model, candidate.kinds).empty() &&
+         parameters_out_of_reach(candidate.model, candidate.kinds, sets.training).empty();
+}
 
 struct Errors {
   double training, validation;
@@ -122,7 +125,7 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
     const std::vector<std::string_view>& relatives = sim::find_effect(kind)->confused_with;
     for (const Candidate& single : singles) {
       const std::string& other = single.kinds.back();
-      if (std::ranges::find(whole.kinds, other) != whole.kinds.end() || !is_physical(single) ||
+      if (std::ranges::find(whole.kinds, other) != whole.kinds.end() || !is_physical(single, sets) ||
           std::ranges::find(relatives, other) == relatives.end())
         continue;
       sim::DriveDescription model = single.model;
@@ -158,7 +161,7 @@ void split_friction(std::vector<Candidate>& candidates, const sim::DriveDescript
     Candidate split = fitted(model);
     if (whole.left < candidate.left) candidate = std::move(whole);
     if (split.training.robust < kBetter * candidate.training.robust && split.left < candidate.left &&
-        is_physical(split))
+        is_physical(split, sets))
       candidate = std::move(split);
   }
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
@@ -217,6 +220,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     renew_floors(sets.training, model);
     renew_floors(sets.validation, model);
   };
+  const auto physical = [&sets](const Candidate& candidate) { return is_physical(candidate, sets); };
   const auto search_singles = [&](double from, double to) {
     found.singles = search(sets.base, {}, from, to);
     if (!found.singles.empty()) renew(found.singles.front().model);
@@ -225,18 +229,18 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   if (!found.singles.empty() && base_was_stuck(sets, found.singles)) search_singles(0.4, 0.5);
   if (found.singles.empty()) return found;
   for (const Candidate& candidate : found.singles)
-    if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
-  const auto single = std::ranges::find_if(found.singles, is_physical);
+    if (!is_physical(candidate, sets)) excluded.push_back(candidate.kinds.back());
+  const auto single = std::ranges::find_if(found.singles, physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = search(single->model, single->kinds, 0.5, 0.8);
   // Uses the whole error. The ranking of candidates gives less weight to single impacts and breakaways, but these
   // determine the remaining error.
   const auto cost = [&](const Candidate& candidate) {
     const Errors errors(candidate.model, sets);
-    return is_physical(candidate) ? errors.training * errors.validation : HUGE_VAL;
+    return is_physical(candidate, sets) ? errors.training * errors.validation : HUGE_VAL;
   };
   const auto pair = std::ranges::min_element(found.pairs, {}, cost);
-  if (pair == found.pairs.end() || !is_physical(*pair)) return found;
+  if (pair == found.pairs.end() || !is_physical(*pair, sets)) return found;
   renew(pair->model);
   Candidate best_pair = *pair;
   std::vector<Candidate> exchanged = with_one_exchanged(best_pair, found.singles, sets);
@@ -257,7 +261,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   }
   if (!promises_a_third(Errors(sets.base, sets), Errors(best_pair.model, sets))) return found;
   found.triples = search(best_pair.model, best_pair.kinds, 0.8, 1.0);
-  const auto triple = std::ranges::find_if(found.triples, is_physical);
+  const auto triple = std::ranges::find_if(found.triples, physical);
   if (triple == found.triples.end()) return found;
   std::vector<Candidate> beside = without_what_is_needless(*triple, sets);
   std::ranges::move(with_one_exchanged(*triple, found.singles, sets), std::back_inserter(beside));
