@@ -13,7 +13,9 @@ namespace {
 using testing::UnorderedElementsAre;
 
 const std::filesystem::path kFar = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases-far";
-const std::filesystem::path kThree = kFar / "triples" / "case-01", kPoorModel = kFar / "rough" / "case-01";
+const std::filesystem::path kThree = kFar / "triples" / "case-01", kPoorModel = kFar / "rough" / "case-01",
+                            kGapBesideFriction = kFar / "triples" / "case-04",
+                            kHardlyDamped = kFar / "encoder" / "case-01";
 
 TEST(SearchBySteps, FindsThreeEffectsOneOnTopOfTheOther) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
@@ -32,6 +34,25 @@ TEST(SearchBySteps, FindsAGapBehindStartsThatAreWorseThanNone) {
   EXPECT_EQ(answer.verdict.status, host::Status::missing) << answer.verdict.explanation;
   EXPECT_THAT(answer.verdict.effects, UnorderedElementsAre("backlash"));
   EXPECT_LT(answer.after, 1.0);
+}
+
+/// The load carries all friction. Seed: the fit with a divided friction compared with the other form unfitted, which
+/// then never reaches the gap's size.
+TEST(SearchBySteps, FindsAGapBesideTwoEffectsOfFriction) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  if (!std::filesystem::exists(kGapBesideFriction)) GTEST_SKIP() << kGapBesideFriction << " is absent";
+  const host::Answer answer = host::run_trial(host::whole_case(kGapBesideFriction, "gap and friction"));
+  EXPECT_EQ(answer.verdict.status, host::Status::missing) << answer.verdict.explanation;
+  EXPECT_THAT(answer.verdict.effects, UnorderedElementsAre("coulomb_asymmetry", "backlash", "dac_dead_zone"));
+}
+
+/// Windows begin without the ringing of the spring, so the fit takes its damping to the lower bound.
+TEST(SearchBySteps, FindsASpringWhoseDampingIsOnItsBound) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  if (!std::filesystem::exists(kHardlyDamped)) GTEST_SKIP() << kHardlyDamped << " is absent";
+  const host::Answer answer = host::run_trial(host::whole_case(kHardlyDamped, "hardly damped"));
+  EXPECT_EQ(answer.verdict.status, host::Status::missing) << answer.verdict.explanation;
+  EXPECT_THAT(answer.verdict.effects, UnorderedElementsAre("compliance"));
 }
 
 }  // namespace
