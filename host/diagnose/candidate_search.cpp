@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
-#include <span>
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
@@ -248,9 +247,8 @@ std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescriptio
 
 /// Refits the last effect from both sides of each of its parameters (unless they were scanned), because an effect at
 /// breakaway or impact has several local minima. Also starts from the given base, because the refit without the effect
-/// may have biased the base too far: there with the fitted effect, and with each of `first_values`, its size first.
-sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal,
-                             const std::vector<sim::EffectEntry>& first_values, const RecordSet& set) {
+/// may have biased the base too far.
+sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
   const sim::DriveDescription& model = finalist.model;
   std::vector<sim::DriveDescription> starts{model};
   if (nominal != nullptr) {
@@ -279,12 +277,6 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   }
   for (const sim::DriveDescription& base : bases)
     if (std::optional<sim::DriveDescription> even = with_even_fading(base)) starts.push_back(*std::move(even));
-  if (nominal != nullptr)
-    for (const sim::EffectEntry& first : first_values) {
-      starts.push_back(bases.back());
-      starts.back().effects.back() = first;
-      starts.back() = fit_model(starts.back(), set, kOwnSize).model;
-    }
   const auto fitted = [&starts](const RecordSet& on, const FitOptions& options) {
     std::vector<FitResult> fits(starts.size());
     for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], on, options); });
@@ -431,15 +423,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
 
   std::optional<Start> leader;
   if (!finalists.empty()) {
-    for (Start& finalist : std::span(finalists).first(std::min(finalists.size(), effort.finalists))) {
-      const RecordSet own = suited_to(finalist.model, affordable(medium, finalist.model, kSeriousFit));
-      std::vector<sim::EffectEntry> first_values;
-      for (const Start& start : starts)
-        if (start.info == finalist.info && !start.scanned) first_values.push_back(start.effect);
-      finalist.model = shaken(finalist, effort.nominal, first_values, own);
-      finalist.error = error_of(sim::Drive(finalist.model), own).robust / error_of(sim::Drive(model), own).robust;
-    }
-    std::ranges::stable_sort(finalists, {}, &Start::error);
+    const sim::DriveDescription& first = finalists.front().model;
+    const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
+    finalists.front().model = shaken(finalists.front(), effort.nominal, own);
     leader = finalists.front();
     // An effect that is often confused with the leader may have a larger error only because the base was biased.
     for (const Start& start : starts)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Pairs of effects, most of which show one in the torque and the other only in the motion, on machines independent of
-the simulator (tests/machines/made_machines.cpp): diagnose finds both and nothing else. For a gap with friction on both
+"""Pairs of effects of which one shows in the torque and the other only in the motion, on machines independent of the
+simulator (tests/machines/made_machines.cpp): diagnose finds both and nothing else. For a gap with friction on both
 sides the fit finds the share of friction on each side."""
 
 import json
@@ -14,9 +14,8 @@ from pathlib import Path
 AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
 # alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset
-# with friction that no motion separates from a constant torque; friction that grows with the square of speed beside a
-# constant torque: without them the base's own friction goes to a value far from the data sheet
-CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (910, 2, 5))
+# with friction that no motion separates from a constant torque
+CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1))
 # a gap with friction on either side beside friction's memory: the gap alone is added
 SHARED_FRICTION = (601, 2, 9)
 
