@@ -75,10 +75,10 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
   return found;
 }
 
-std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
-                                                 const std::vector<std::string>& kinds, const RecordSet& training) {
+std::vector<std::string> unphysical_parameters(const sim::DriveDescription& model,
+                                               const std::vector<std::string>& kinds, const RecordSet& training) {
   constexpr double kFarthest = 10.0;  // travels: over one travel the effect changes by a tenth, as kWorthNaming asks
-  std::vector<std::string> found;
+  std::vector<std::string> found = parameters_on_bound(model, kinds);
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
     if (entry == nullptr) continue;

@@ -45,13 +45,13 @@ enum class Reservation {
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Parameters of the effects in `kinds` that are at a bound of their range, for example "compliance: damping_ratio". A
-/// bound at zero, or the upper bound of a stiffness, is allowed: that part of the effect is then absent.
+/// bound at which that part of the effect is absent is allowed (sim::ParameterInfo::is_stopped_at).
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
 
-/// Parameters that are positions so far outside the travel of the records that the effect hardly changes over the
-/// travel and stands in for a constant.
-std::vector<std::string> parameters_out_of_reach(const sim::DriveDescription& model,
-                                                 const std::vector<std::string>& kinds, const RecordSet& training);
+/// The same, and positions so far outside the travel of the records that the effect hardly changes over the travel and
+/// stands in for a constant.
+std::vector<std::string> unphysical_parameters(const sim::DriveDescription& model,
+                                               const std::vector<std::string>& kinds, const RecordSet& training);
 
 /// Seconds of validation data for which an improvement in all windows is significant for the best of `tried`
 /// candidates.

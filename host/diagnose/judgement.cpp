@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "host/compare/chance.hpp"
 #include "host/diagnose/certainty.hpp"
@@ -39,9 +38,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.luck =
       probability_of_luck(before, after, tried, windows_in(kLuckBlock_s, validation), validation.common_square);
   judged.model = candidate.model;
-  judged.on_bound = parameters_on_bound(candidate.model, candidate.kinds);
-  std::ranges::move(parameters_out_of_reach(candidate.model, candidate.kinds, training),
-                    std::back_inserter(judged.on_bound));
+  judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
   return judged;
 }
 

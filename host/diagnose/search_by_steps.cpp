@@ -21,8 +21,7 @@ namespace {
 /// An effect that helps only at a bound of its physical range, or far from the recorded travel, stands in for another
 /// one. No further effect is added to it.
 bool is_physical(const Candidate& candidate, const PreparedSets& sets) {
-  return parameters_on_bound(candidate.model, candidate.kinds).empty() &&
-         parameters_out_of_reach(candidate.model, candidate.kinds, sets.training).empty();
+  return unphysical_parameters(candidate.model, candidate.kinds, sets.training).empty();
 }
 
 struct Errors {
