@@ -202,13 +202,19 @@ std::vector<Period> run_fixed(const AxisParameters<double>& parameters, int peri
   return record;
 }
 
+/// Position, velocity and disturbance from one sample to the next.
+Eigen::Matrix3d transition(const AxisParameters<double>& p) {
+  Eigen::Matrix3d A;
+  A << 1.0, p.drive.Ad12, -p.drive.Bd1, 0.0, p.drive.Ad22, -p.drive.Bd2, 0.0, 0.0, 1.0;
+  return A;
+}
+
 /// Eqs. (43) and (50) or zero phase in matrices of double precision. From the measurements, references and outputs of
 /// the fixed-point axis it computes the exact estimates and the exact next word. Eq. (19) is the axis's own:
 /// FrictionPieces has a test of its error.
 Differences judge(const AxisParameters<double>& p, const firmware::FrictionParameters<FixedPoint>& friction_in_fixed,
                   const std::vector<Period>& record) {
-  Eigen::Matrix3d A;
-  A << 1.0, p.drive.Ad12, -p.drive.Bd1, 0.0, p.drive.Ad22, -p.drive.Bd2, 0.0, 0.0, 1.0;
+  const Eigen::Matrix3d A = transition(p);
   const Eigen::Vector3d B(p.drive.Bd1, p.drive.Bd2, 0.0);
   Eigen::Matrix<double, 3, 2> K;
   for (int row = 0; row < 3; ++row) K.row(row) << p.Kobs[row][0], p.Kobs[row][1];
@@ -257,8 +263,7 @@ constexpr double kStep = 0x1p-21;  ///< of a number; a product is rounded by hal
 /// Allowed differences of the estimates: every product of eq. (43) rounded by half a step in the worst direction, at
 /// every sample, carried on by the observer itself: the sum of |M^k| r with M = (I - K C) A.
 Differences most_estimate_error(const AxisParameters<double>& p) {
-  Eigen::Matrix3d A;
-  A << 1.0, p.drive.Ad12, -p.drive.Bd1, 0.0, p.drive.Ad22, -p.drive.Bd2, 0.0, 0.0, 1.0;
+  const Eigen::Matrix3d A = transition(p);
   Eigen::Matrix3d left = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity_gain;
   for (int row = 0; row < 3; ++row) {
