@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "host/exit_codes.hpp"
 #include "tests/host/report/sample_report.hpp"
+#include "tests/host/temporary_folder.hpp"
 
 namespace host {
 namespace {
@@ -138,16 +138,14 @@ TEST(Report, RefusesSeriesThatDoNotFitTogether) {
 }
 
 TEST(Report, IsWrittenWholeOrNotAtAll) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "axis-report-test";
-  std::filesystem::create_directories(folder);
-  const std::string path = folder / "report.html";
+  const TemporaryFolder folder;
+  const std::string path = folder.path("report.html");
   const Report report = sample::report();
   report.write(path);
   std::ifstream file(path, std::ios::binary);
   const std::string written((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   EXPECT_EQ(written, report.html());
-  EXPECT_THROW(report.write(folder / "no such folder" / "report.html"), Failure);
-  std::filesystem::remove_all(folder);
+  EXPECT_THROW(report.write(folder.path("no such folder/report.html")), Failure);
 }
 
 }  // namespace
