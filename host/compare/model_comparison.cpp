@@ -89,7 +89,7 @@ Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord p
     prepared.windows.push_back({end, prepared.record->size() - 1 - end});
     auto weights = *prepared.shift_weights;
     if (end / prepared.windows.front().length == weights.size())
-      weights.push_back(prepared.smoother.shift_weights(end));
+      weights.push_back(prepared.smoother->shift_weights(end));
     prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
   }
   Prediction prediction;

@@ -34,7 +34,7 @@ class Restarts {
     if (memory_ == 0 && !shifts) return drive_.at(motion_.x[row], motion_.w[row]);
     const ShiftWeights* weights = shifts ? &prepared_.weights_of(window) : nullptr;
     // Rows that are too old to affect the state of the drive are skipped.
-    std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
+    std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother->reach() : 0));
     if (shifts) needed = std::min(needed, weights->first);
     if (!begun_ || needed > row_) begin_at(needed, index);
     follow_to(row);

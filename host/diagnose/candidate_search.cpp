@@ -333,6 +333,22 @@ std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::D
   return lost;
 }
 
+/// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
+/// has not taken over the part of the effect, as one may that was fitted to the motion without it.
+std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,
+                                                    const sim::EffectInfo& info) {
+  kinds.emplace_back(info.kind);
+  for (const std::vector<ScreenedModel>& step : balance.steps)
+    for (const ScreenedModel& tried : step) {
+      if (!std::ranges::is_permutation(tried.kinds, kinds)) continue;
+      sim::DriveDescription model = tried.model;
+      const auto entry = std::ranges::find(model.effects, info.kind, &sim::EffectEntry::kind);
+      std::rotate(entry, entry + 1, model.effects.end());
+      return model;
+    }
+  return {};
+}
+
 }  // namespace
 
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
@@ -381,6 +397,12 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   });
   std::vector<Start> starts;
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
+  if (effort.balance != nullptr)
+    for (const sim::EffectInfo* info : infos)
+      if (std::optional<sim::DriveDescription> start = balanced_start(*effort.balance, kinds, *info)) {
+        starts.push_back({info, *std::move(start)});
+        starts.back().scanned = needs_own_floors(starts.back().model);
+      }
 
   std::atomic<std::size_t> done{0};
   const double most = static_cast<double>(starts.size() + infos.size());

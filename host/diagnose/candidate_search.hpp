@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/compare/comparison.hpp"
+#include "host/effort/effort_screen.hpp"
 #include "sim/effect.hpp"
 
 namespace host {
@@ -38,6 +39,7 @@ struct SearchEffort {
   SearchEffort over(double window_s) const;
 
   const sim::DriveDescription* nominal = nullptr;    ///< the given model: its base parameters are a further start
+  const EffortScreen* balance = nullptr;             ///< force balance: its fitted models are further starts
   const std::vector<std::string>* absent = nullptr;  ///< kinds that are no candidates
   std::vector<std::string>* cut_short = nullptr;     ///< receives the kinds for which a fit ended at its budget
 };

@@ -65,7 +65,7 @@ namespace {
 
 /// Diagnosis by a search over the effects, on sets whose base is fitted.
 Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const FigureRows& rows,
-                             const ShareDone& progress) {
+                             const EffortScreen* balance, const ShareDone& progress) {
   Diagnosis result(std::move(sets));
   result.rows = rows;
   const sim::Drive given(model);
@@ -79,6 +79,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   if (progress) progress(0.05);
   SearchEffort effort = SearchEffort{}.over(result.window_s);
   effort.nominal = &model;
+  effort.balance = balance;
   effort.cut_short = &result.not_searched;
   const Findings found = search_by_steps(result, part_of(progress, 0.05, 0.95), effort);
   judge(result, model, found);
@@ -197,19 +198,21 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   if (before != nullptr) time_beside(given);
   prepare();
   const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
-  std::shared_ptr<const EffortScreen> screen;
-  const auto search = [&](PreparedSets sets, const sim::DriveDescription& from) {
+  std::shared_ptr<const EffortScreen> screen, balance;
+  const auto search_from = [&](PreparedSets sets, const sim::DriveDescription& from, const EffortScreen* starts) {
     sets.absent = absent;
-    Diagnosis result = diagnose_by_search(std::move(sets), from, rows, progress);
+    Diagnosis result = diagnose_by_search(std::move(sets), from, rows, starts, progress);
     result.log = measured.log();
     result.screen = screen;
     return result;
   };
+  const auto search = [&](PreparedSets sets) { return search_from(std::move(sets), model, balance.get()); };
+  if (!by_short_windows && split.moves_enough) balance = screen_of(model, split);
   // Diagnosis by the regression; empty if the search by motion must decide. `rough`: the motion has shown that the
   // machine is limited by model error and so cannot decide.
   const auto by_effort = [&](bool rough) -> std::optional<Diagnosis> {
     if (!split.moves_enough || (!has_linear_form(model) && !rough)) return {};
-    const std::shared_ptr<const EffortScreen> seen = screen_of(model, split);
+    const std::shared_ptr<const EffortScreen>& seen = balance;
     if (!seen->empty()) screen = seen;
     if (seen->chosen.empty() && !effort_decides(*seen, split.validation)) return {};
     if (!seen->chosen.empty() && time_beside(seen->best().model)) prepare();
@@ -223,7 +226,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   const auto completed = [&](Diagnosis diagnosis) {
     PreparedSets on_top = split;
     on_top.base = diagnosis.best;
-    Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis.best);
+    Diagnosis further = search_from(with_base_fitted(std::move(on_top)), diagnosis.best, nullptr);
     const bool adds = !further.rough && further.verdict.status == Status::missing;
     return adds ? together(model, std::move(diagnosis), std::move(further)) : diagnosis;
   };
@@ -245,7 +248,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       if (ends_here || (tells && !may_be_completed(*diagnosis, split.validation))) return *std::move(diagnosis);
       // Effects that do not change the torque or force while the axis slides, such as a current limit, show in the
       // motion.
-      over_long_windows = search(with_base_fitted(split), model);
+      over_long_windows = search(with_base_fitted(split));
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen) ||
                                          explains_what_the_balance_does_not(*over_long_windows, *diagnosis);
@@ -254,7 +257,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     }
   }
   if (!by_short_windows) {
-    over_long_windows = search(with_base_fitted(split), model);
+    over_long_windows = search(with_base_fitted(split));
     if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) {
@@ -267,12 +270,12 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
       rough_measure(model, training, validation) == Measure::effort) {
-    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort), model);
+    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort));
     const Status status = result.verdict.status;
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
   if (short_s < kWindow_s || !over_long_windows)
-    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s)), model));
+    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s))));
   return unless_unexplained(*std::move(over_long_windows));
 }
 

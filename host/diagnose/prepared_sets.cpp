@@ -100,7 +100,7 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
     PreparedRecord& trains = training.records[r].prepared;
     PreparedRecord& judges = validation.records[r].prepared;
     const std::vector<Window> all = trains.windows;
-    const std::size_t reach = trains.smoother.reach();
+    const std::size_t reach = trains.smoother->reach();
     trains.windows.clear();
     judges.windows.clear();
     std::vector<bool> near(trains.record->size(), false);  // rows that affect a validation window

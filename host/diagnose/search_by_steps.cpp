@@ -127,15 +127,20 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
       if (std::ranges::find(whole.kinds, other) != whole.kinds.end() || !is_physical(single, sets) ||
           std::ranges::find(relatives, other) == relatives.end())
         continue;
-      sim::DriveDescription model = single.model;
       std::vector<std::string> kinds = {other};
+      // On the base of the other effect alone, and on the base of the whole.
+      sim::DriveDescription alone = single.model, exchanged = whole.model;
+      std::erase_if(exchanged.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
+      exchanged.effects.push_back(*single.model.find(other));
       for (const std::string& kept : whole.kinds) {
         if (kept == kind) continue;
-        model.effects.push_back(*whole.model.find(kept));
+        alone.effects.push_back(*whole.model.find(kept));
         kinds.push_back(kept);
       }
+      const FitResult one = fit_model(alone, sets.training, kWithoutOne);
+      const FitResult two = fit_model(exchanged, sets.training, kWithoutOne);
       found.push_back(
-          judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training, sets.validation));
+          judged(kinds, (one.robust < two.robust ? one : two).model, sets.base, sets.training, sets.validation));
     }
   }
   return found;

@@ -40,14 +40,14 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
                           command_volts(record, base.data),
                           HeldCommand(record, base.data),
                           record.u_V.empty() ? base.data.torque_constant_Nm_per_A * row_noise(record.i_A) : 0.0,
-                          MotionSmoother(record, base),
+                          std::make_shared<const MotionSmoother>(record, base),
                           {},
                           record.sample_period_s,
                           nullptr};
   std::vector<ShiftWeights> weights;
   for (std::size_t begin = 0; begin + length < record.size(); begin += length) {
     prepared.windows.push_back({begin, length});
-    weights.push_back(prepared.smoother.shift_weights(begin));
+    weights.push_back(prepared.smoother->shift_weights(begin));
   }
   prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
   return prepared;

@@ -28,12 +28,12 @@ struct PreparedRecord {
   std::vector<double> u_V;  ///< command_volts
   HeldCommand held;         ///< the same command, as the drive holds it
   double effort_noise;      ///< noise of one row, Nm or N; 0 for a command, which is known exactly
-  MotionSmoother smoother;
+  std::shared_ptr<const MotionSmoother> smoother;  ///< shared by copies of a set: 200 bytes a row
   std::vector<Window> windows;
   double period_s;
   std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< weights of every complete window of the record
 
-  const SmoothedMotion& motion() const { return smoother.motion(); }
+  const SmoothedMotion& motion() const { return smoother->motion(); }
   double window_s() const {
     return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
   }

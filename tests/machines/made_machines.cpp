@@ -308,6 +308,8 @@ bool excludes(const string& a, const string& b) {
   const auto pair = [&](const char* one, const char* other) {
     return (a == one && b == other) || (a == other && b == one);
   };
+  // The centre of a spring takes a constant force over.
+  if (pair("spring_torque", "constant_torque") || pair("spring_torque", "dac_offset")) return true;
   return pair("presliding", "friction_lag") || pair("presliding", "dwell_stiction") || pair("presliding", "stribeck") ||
          pair("stribeck", "friction_lag") || pair("stribeck", "dwell_stiction") ||
          pair("friction_lag", "dwell_stiction");
