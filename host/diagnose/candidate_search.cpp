@@ -72,6 +72,7 @@ struct Start {
   sim::DriveDescription model;
   double error = HUGE_VAL;                         ///< error relative to the base's
   bool scanned = false;                            ///< the best of many starts, found by a scan
+  bool balanced = false;                           ///< fitted by the force balance
   bool cut_short = false;                          ///< a fit ended at its budget
   sim::EffectEntry effect = model.effects.back();  ///< before any fit
 
@@ -399,10 +400,11 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
   if (effort.balance != nullptr)
     for (const sim::EffectInfo* info : infos)
-      if (std::optional<sim::DriveDescription> start = balanced_start(*effort.balance, kinds, *info)) {
-        starts.push_back({info, *std::move(start)});
-        starts.back().scanned = needs_own_floors(starts.back().model);
-      }
+      // Periods come from a spectrum over those that repeat within the travel, second masses from a scan.
+      if (std::optional<sim::DriveDescription> start =
+              info->periodic ? std::nullopt : balanced_start(*effort.balance, kinds, *info);
+          start && !needs_own_floors(*start))
+        starts.push_back({.info = info, .model = *std::move(start), .balanced = true});
 
   std::atomic<std::size_t> done{0};
   const double most = static_cast<double>(starts.size() + infos.size());
@@ -429,9 +431,12 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   fit_all(lost, coarse, budgeted(kFirstLook));
   std::ranges::move(lost, std::back_inserter(starts));
   std::ranges::stable_sort(starts, {}, &Start::error);
+  // A start that the force balance has fitted is ahead of those that a few passes could not fit yet.
+  const auto unfitted = std::ranges::find(starts, false, &Start::balanced);
+  const double in_sight = unfitted == starts.end() ? HUGE_VAL : kOutOfSight * unfitted->error;
   std::vector<Start> race;
   for (const Start& start : starts) {
-    const bool far_behind = start.error > kOutOfSight * starts.front().error;
+    const bool far_behind = start.error > in_sight;
     const bool costly = needs_own_floors(start.model) && !needs_own_floors(model);
     if (start.error > kPromise || (far_behind && (costly || race.size() >= effort.finalists))) continue;
     const auto rivals = std::ranges::count(race, start.info, &Start::info);

@@ -14,8 +14,9 @@ from pathlib import Path
 AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
 # alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset
-# with friction that no motion separates from a constant torque
-CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1))
+# with friction that no motion separates from a constant torque; a constant torque beside nonlinear viscous friction,
+# which a base fitted to the motion without it takes over
+CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (910, 2, 5))
 # a gap with friction on either side beside friction's memory: the gap alone is added
 SHARED_FRICTION = (601, 2, 9)
 
