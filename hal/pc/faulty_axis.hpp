@@ -10,8 +10,9 @@ namespace hal::pc {
 
 /// Present defects. All may occur at once; zero and false mean no defect.
 struct AxisDefects {
-  bool encoder_dead = false;          ///< its wires are cut: the counter does not move, undetected
-  bool encoder_reported_bad = false;  ///< its wires are cut, and the input's monitor detects it
+  bool encoder_dead = false;          ///< its wires are cut: the counter does not move; only its receivers detect it
+  bool encoder_reported_bad = false;  ///< its readings are invalid
+  bool encoder_fault_open = false;    ///< the wire of its receivers' fault output is open
   bool encoder_swapped = false;       ///< both channels are interchanged: it counts the other way
   std::int32_t encoder_noise = 0;     ///< counts, evenly spread over +-noise at every reading
   std::int32_t encoder_lost = 0;      ///< lost counts
@@ -61,6 +62,7 @@ class FaultyAxis {
         reading += std::uniform_int_distribution<std::int32_t>(-d.encoder_noise, d.encoder_noise)(axis_.noise_);
       return {static_cast<std::uint32_t>(reading), true};
     }
+    bool is_faulted() const { return axis_.defects.encoder_dead || axis_.defects.encoder_fault_open; }
 
    private:
     FaultyAxis& axis_;
@@ -203,6 +205,7 @@ class FaultyAxis {
 };
 
 static_assert(AxisHal<FaultyAxis>);
+static_assert(MonitoredEncoder<FaultyAxis::Encoder>);
 static_assert(LimitInputs<FaultyAxis::Limits>);
 
 }  // namespace hal::pc

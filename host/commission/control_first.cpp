@@ -27,7 +27,9 @@ CommissionStepResult control_first(CommissionSession& session) {
   session.plan_limits(model);
   const firmware::ParameterValues values = session.design(model, session.first_loop(model), "first-params.toml");
   const CommissionOptions& options = session.options();
-  const StoppingFigures axis = figures_of(session, model, values.axis(options.axis));
+  const firmware::AxisValues axis_values = values.axis(options.axis);
+  const StoppingFigures axis = figures_of(session, model, axis_values);
+  check_feedback_at_rest(axis, axis_values.get<"tachometer.fitted">() || axis_values.get<"encoder.fault_input">());
   const std::string stops =
       check_stopping_room(axis, options.box.speed, options.overtravel, units_of(model.data.kind).travel);
   session.download(values);

@@ -49,4 +49,13 @@ std::string check_stopping_room(const StoppingFigures& axis, double speed, std::
                             fastest > 0.0 ? fmt::format("at most speed={:.3g} in --box, ", fastest) : std::string()));
 }
 
+void check_feedback_at_rest(const StoppingFigures& axis, bool notices_dead_encoder) {
+  if (notices_dead_encoder || axis.weight <= axis.friction) return;
+  throw Failure(
+      ExitCode::refused,
+      "The axis falls without current: its weight exceeds its friction. If its encoder dies at rest, only a "
+      "tachometer or the fault output of the encoder's receivers shows it before the axis falls: fit one, and "
+      "set tachometer.fitted or encoder.fault_input");
+}
+
 }  // namespace host

@@ -24,4 +24,9 @@ double fastest_within(const StoppingFigures& axis, double room);
 std::string check_stopping_room(const StoppingFigures& axis, double speed, std::optional<double> overtravel,
                                 const char* unit);
 
+/// Throws Failure(refused) if the weight exceeds the friction, unless the board notices a dead encoder at rest: by a
+/// tachometer or the fault output of the encoder's receivers. With a dead encoder the command stays as it is, and any
+/// change of the load accelerates the axis unnoticed.
+void check_feedback_at_rest(const StoppingFigures& axis, bool notices_dead_encoder);
+
 }  // namespace host

@@ -54,6 +54,7 @@ MachineAxes axes_of(const FaultTrial& trial) {
       designed[(trial.tachometer ? 1u : 0u) + (trial.weight_Nm != 0.0 ? 2u : 0u) + (trial.light ? 4u : 0u)];
   for (MachineAxis& axis : axes) {
     axis.parameters.acceleration_limit = static_cast<float>(trial.acceleration_mm_s2);
+    axis.parameters.encoder_fault_input = trial.encoder_fault_input;
     axis.parameters.sequence = {.ready_input = trial.start.ready_input,
                                 .brake_fitted = trial.start.brake,
                                 .amplifier_wait = trial.start.ready_ms,
@@ -349,11 +350,13 @@ std::string FaultTrial::text() const {
   std::string faults = named(first);
   if (second.injection != nullptr) faults += fmt::format(", {} samples later {}", delay, named(second));
   return fmt::format(
-      "{}, {} at {:g} mm/s ({:g} mm/s^2, {}{} tachometer, {} ms until {}, {} brake, {:g} Nm of weight), sample {}{}, "
+      "{}, {} at {:g} mm/s ({:g} mm/s^2, {}{} tachometer, {} fault output of the encoder, {} ms until {}, {} brake, "
+      "{:g} Nm "
+      "of weight), sample {}{}, "
       "seed {}",
       faults, kTrialMotions[static_cast<std::size_t>(motion)], speed_mm_s, acceleration_mm_s2, light ? "light, " : "",
-      tachometer ? "with" : "without", start.ready_ms, start.ready_input ? "late" : "ready",
-      start.brake ? "with" : "without", weight_Nm, sample,
+      tachometer ? "with" : "without", encoder_fault_input ? "with" : "without", start.ready_ms,
+      start.ready_input ? "late" : "ready", start.brake ? "with" : "without", weight_Nm, sample,
       motion == TrialMotion::stopping ? fmt::format(" and {}", since_disable) : "", seed);
 }
 
@@ -386,12 +389,14 @@ std::string fault_page() {
       const TrialStart start{.ready_ms = is_start || info.needs == InjectionInfo::Needs::ready_input ? 500 : 0,
                              .ready_input = info.needs == InjectionInfo::Needs::ready_input,
                              .brake = info.needs == InjectionInfo::Needs::brake};
-      const TrialOutcome outcome = run_trial({.first = {&info, 0, info.usual},
-                                              .second = {},
-                                              .motion = motion,
-                                              .sample = is_start ? 100 : 300,
-                                              .speed_mm_s = 250.0,
-                                              .start = start});
+      const TrialOutcome outcome =
+          run_trial({.first = {&info, 0, info.usual},
+                     .second = {},
+                     .motion = motion,
+                     .sample = is_start ? 100 : 300,
+                     .speed_mm_s = 250.0,
+                     .encoder_fault_input = info.needs == InjectionInfo::Needs::encoder_fault_input,
+                     .start = start});
       page += fmt::format("| {} | {} | `{}` | {:.0f} | {:.0f} | {:.1f} |\n", info.what,
                           kTrialMotions[static_cast<std::size_t>(motion)], firmware::fault_info(outcome.fault).name,
                           1e3 * outcome.reaction_s, 1e3 * outcome.stop_s, outcome.distance_mm);

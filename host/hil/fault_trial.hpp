@@ -37,6 +37,7 @@ struct FaultTrial {
   int since_disable = 0;      ///< stopping: samples from the disable to the injection
   double speed_mm_s = 100.0;  ///< signed speed of jogs
   bool tachometer = true;     ///< both axes have one
+  bool encoder_fault_input = false;    ///< the fault outputs of the encoders' receivers are wired
   double acceleration_mm_s2 = 2000.0;  ///< limit of the references
   TrialStart start{};
   double weight_Nm = 0.0;  ///< load that pulls on both motors; if not 0, a brake is fitted

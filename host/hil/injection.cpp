@@ -42,11 +42,13 @@ InjectionInfo flag(const char* kind, const char* what, Needs needs, std::vector<
 
 const std::vector<InjectionInfo>& table() {
   static const std::vector<InjectionInfo> rows{
-      flag<&AxisDefects::encoder_dead>(
-          "encoder_cut", "encoder wires cut: the counter stands still", Needs::nothing,
-          {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump, AxisFault::command_without_motion}),
-      flag<&AxisDefects::encoder_reported_bad>("encoder_invalid",
-                                               "encoder wires cut, and the input's monitor reports it", Needs::nothing,
+      flag<&AxisDefects::encoder_dead>("encoder_cut", "encoder wires cut: the counter stands still", Needs::nothing,
+                                       {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump,
+                                        AxisFault::command_without_motion, AxisFault::encoder_invalid}),
+      flag<&AxisDefects::encoder_fault_open>("encoder_fault_open",
+                                             "the wire of the encoder receivers' fault output is cut",
+                                             Needs::encoder_fault_input, {AxisFault::encoder_invalid}),
+      flag<&AxisDefects::encoder_reported_bad>("encoder_invalid", "the encoder's readings are invalid", Needs::nothing,
                                                {AxisFault::encoder_invalid}),
       flag<&AxisDefects::encoder_swapped>(
           "encoder_swapped", "encoder channels interchanged", Needs::nothing,

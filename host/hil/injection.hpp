@@ -17,7 +17,7 @@ struct InjectionInfo {
   double least = 0.0;     ///< smallest magnitude that must be detected
   bool of_board = false;  ///< affects both axes
   /// Requirement for the fault to be found: an optional part of the machine or a phase, see FaultTrial.
-  enum class Needs { nothing, ready_input, brake, open_loop } needs = Needs::nothing;
+  enum class Needs { nothing, encoder_fault_input, ready_input, brake, open_loop } needs = Needs::nothing;
   /// The faults that identify this cause.
   std::vector<firmware::AxisFault> named_by;
   void (*apply)(Machine& machine, std::size_t axis, double value);

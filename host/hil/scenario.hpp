@@ -33,6 +33,7 @@ struct ScenarioAxis {
   bool compensation = true;  ///< compensate further known effects
   ReferenceLimits limits;
   LoopTuning tuning;
+  bool encoder_fault_input = false;  ///< the fault output of the encoder's receivers is wired
   hal::pc::AxisWiring wiring;
 };
 

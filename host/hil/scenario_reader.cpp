@@ -106,6 +106,7 @@ class ScenarioReader {
     axis.limits.acceleration = from.positive("acceleration_limit_mm_s2", axis.limits.acceleration);
     axis.limits.jerk = from.positive("jerk_limit_mm_s3", axis.limits.jerk);
     axis.tuning = read_tuning(from);
+    axis.encoder_fault_input = from.toggle("encoder_fault_input", false);
     axis.wiring.positive_end = from.number("positive_switch_mm", axis.wiring.positive_end);
     axis.wiring.negative_end = from.number("negative_switch_mm", axis.wiring.negative_end);
     from.refuse_rest();

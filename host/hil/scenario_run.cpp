@@ -38,6 +38,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
                                            .effects = axis.compensation},
                                           axis.limits, axis.tuning);
   parameters.zero_phase_feedforward_on = axis.zero_phase;
+  parameters.encoder_fault_input = axis.encoder_fault_input;
   return {axis.drive, parameters, axis.wiring};
 }
 

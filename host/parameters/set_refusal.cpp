@@ -81,8 +81,8 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
              "the control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
     case Refusal::brake_feedback:
       return "an axis with a brake may fall, and at rest only a tachometer or the fault output of the encoder's "
-             "receivers reveals a dead encoder: fit one (tachometer.fitted or encoder.fault_input), or leave the brake "
-             "to the amplifier (brake.fitted = false)";
+             "receivers reveals a dead encoder: fit one (tachometer.fitted or encoder.fault_input). An axis whose "
+             "amplifier controls the brake (brake.fitted = false) needs one as well";
     case Refusal::following_error:
       return following_error_relation(p);
     case Refusal::disagreement:

@@ -247,19 +247,26 @@ TEST_F(Followed, NodesBeyondAnAxissLimitsAreRefusedWhenTheyCome) {
 }
 
 /// Both nodes lie inside, but the path between them does not.
-TEST_F(Followed, APieceThatLeavesTheTravelBetweenItsNodesIsRefused) {
-  open();
-  const auto inside = [](std::size_t, std::int64_t counts) { return counts >= -10 && counts <= 3000; };
-  const auto push = [&](int samples, double travel, double speed) {
-    firmware::PathNode<kAxes> node;
-    node.set_time(static_cast<std::uint32_t>(samples) << firmware::kPathTimeBits);
-    node.axis[0] = {static_cast<std::int32_t>(std::lround(travel * 65536)),
-                    static_cast<std::int32_t>(std::lround(std::ldexp(speed, 24))), 0};
-    return follower_.push(node, false, inside);
-  };
-  ASSERT_EQ(push(200, 2500, 25.0), Refusal::none);
-  EXPECT_EQ(push(300, 0, -25.0), Refusal::outside_travel) << "it turns round beyond 3,000";
-}
+class TurnBetweenNodes : public Followed {
+ protected:
+  Refusal beyond(double end) {
+    open();
+    const auto inside = [](std::size_t, std::int64_t counts) { return counts >= -3000 && counts <= 3000; };
+    const auto push = [&](int samples, double travel, double speed) {
+      firmware::PathNode<kAxes> node;
+      node.set_time(static_cast<std::uint32_t>(samples) << firmware::kPathTimeBits);
+      node.axis[0] = {static_cast<std::int32_t>(std::lround(travel * 65536)),
+                      static_cast<std::int32_t>(std::lround(std::ldexp(speed, 24))), 0};
+      return follower_.push(node, false, inside);
+    };
+    const double sense = end > 0 ? 1.0 : -1.0;
+    EXPECT_EQ(push(200, sense * 2500, sense * 25.0), Refusal::none);
+    return push(300, 0, sense * -25.0);
+  }
+};
+
+TEST_F(TurnBetweenNodes, BeyondOneEndIsRefused) { EXPECT_EQ(beyond(3000), Refusal::outside_travel); }
+TEST_F(TurnBetweenNodes, BeyondTheOtherEndIsRefused) { EXPECT_EQ(beyond(-3000), Refusal::outside_travel); }
 
 /// The other axes of a group are told of an axis's fault in their next step, and stop from their speed in that step.
 TEST_F(Followed, LeadsOnForOneSampleWhenAnAxisLeaves) {

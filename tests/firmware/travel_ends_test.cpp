@@ -73,6 +73,52 @@ TEST(EndsOfTravel, AMoveBeyondIsRefusedBeforeItStarts) {
   EXPECT_EQ(axis.axis.plan_move_to(target(9.9)).refusal, firmware::Refusal::none);
 }
 
+/// The limits are 20 mm apart.
+TEST(EndsOfTravel, AnAxisThatIsNotHomedGoesAsFarAsItsTravelIsLongFromWhereItWasEnabled) {
+  DrivenAxis axis(parameters(10.0));
+  const auto run = [&axis](int samples) {
+    for (int k = 0; k < samples; ++k) axis.step();
+  };
+  const auto by = [](double mm) {
+    return static_cast<std::int64_t>(std::llround(mm / firmware_test::kEncoderResolution_mm));
+  };
+  const auto enable_anew = [&] {
+    ASSERT_TRUE(axis.axis.disable());
+    run(300);
+    ASSERT_TRUE(axis.axis.enable());
+    run(2);
+  };
+  ASSERT_TRUE(axis.axis.disable());
+  run(300);
+  axis.axis.forget_home();
+  run(1);
+  double from_mm = axis.at_mm();
+  ASSERT_TRUE(axis.axis.enable());
+  run(2);
+  for (const float way : {1.0f, -1.0f}) {
+    ASSERT_TRUE(axis.axis.jog(50.0f * way)) << way;
+    run(3000);
+    const double went_mm = static_cast<double>(way) * (axis.at_mm() - from_mm);
+    EXPECT_TRUE(axis.axis.is_at_rest());
+    EXPECT_LT(went_mm, 20.0) << way;
+    EXPECT_GT(went_mm, 15.0) << "it stops far too early";
+    EXPECT_EQ(axis.axis.plan_move_by(by(static_cast<double>(way) * (20.1 - went_mm))).refusal,
+              firmware::Refusal::outside_travel)
+        << "several moves go no farther than one";
+    ASSERT_TRUE(axis.axis.start(axis.axis.plan_move_by(by(static_cast<double>(-way) * went_mm)).plan));
+    run(2000);
+    EXPECT_NEAR(axis.at_mm(), from_mm, 0.1) << "the way back is free";
+  }
+  ASSERT_TRUE(axis.axis.jog(50.0f));
+  run(3000);
+  from_mm = axis.at_mm();
+  enable_anew();
+  ASSERT_TRUE(axis.axis.jog(50.0f)) << "from here it counts anew";
+  run(3000);
+  EXPECT_NEAR(axis.at_mm() - from_mm, 20.0, 5.0);
+  EXPECT_EQ(axis.axis.fault(), AxisFault::none);
+}
+
 class TwoAxes : public testing::Test {
  protected:
   TwoAxes() {

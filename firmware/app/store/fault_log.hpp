@@ -48,7 +48,6 @@ class FaultLog {
   /// Stalls the processor as ParameterStore::save does. False if the flash fails.
   bool add(LoggedFault entry) {
     entry.number = entry.is_event() ? number_ + 1 : number_;
-    if (next_ >= entries() && !begin_sector()) return false;
     if (!put_next(sector_, next_, entry) && !(begin_sector() && put_next(sector_, next_, entry))) return false;
     note(next_ - 1, entry);
     return true;

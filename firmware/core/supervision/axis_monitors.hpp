@@ -77,8 +77,10 @@ class AxisMonitors {
     return travel_.watch(seen, switches.read());
   }
 
-  /// From now on positions are counted from another origin.
-  constexpr void forget_travel() { travel_.restart(); }
+  // As for TravelMonitor.
+  constexpr void bound_travel_by_limits() { travel_.bound_by_limits(); }
+  constexpr void bound_travel_from(std::int64_t here) { travel_.bound_from(here); }
+  constexpr void unbound_travel() { travel_.unbound(); }
 
   /// The smaller of the two sensors' speeds: a speed that both sensors show is not a sensor fault.
   constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
@@ -90,7 +92,7 @@ class AxisMonitors {
   /// With the loop open there is no reference to follow and no control signal to check.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
     restart_motion();
-    travel_.restart();
+    seen.homed ? travel_.restart() : travel_.bound_from(seen.encoder_counts);
     const bool is_broken = Traits::is_nan(seen.estimate.offset + seen.estimate.velocity + seen.estimate.disturbance);
     return is_broken ? AxisFault::state_not_a_number : AxisFault::none;
   }

@@ -127,9 +127,10 @@ constexpr auto rows() {
       threshold(&M::polarity_command_V, {150, "monitor.polarity_command", command, 1e-3F, 1e3F, 3,
                                          "command above any friction: it must accelerate the drive"}),
       threshold(&M::travel_min_counts,
-                {151, "monitor.travel_min", travel, -1e6F, 1e6F, -1e5F, "end of travel; watched once homed"}),
-      threshold(&M::travel_max_counts,
-                {152, "monitor.travel_max", travel, -1e6F, 1e6F, 1e5F, "end of travel; watched once homed"}),
+                {151, "monitor.travel_min", travel, -1e6F, 1e6F, -1e5F, "end of travel of a homed axis"}),
+      threshold(&M::travel_max_counts, {152, "monitor.travel_max", travel, -1e6F, 1e6F, 1e5F,
+                                        "end of travel of a homed axis; before it is homed, it moves by at most max - "
+                                        "min from where it was enabled"}),
       threshold(&M::saturation_samples,
                 {153, "monitor.saturation_time", time, 1e-3F, 10, 0.1F, "longest time at the D/A converter's limit"}),
       threshold(&M::oscillation_V, {154, "monitor.oscillation", command, 1e-3F, 1e3F, 2.5F,

@@ -79,23 +79,23 @@ class SupervisedAxis {
     is_interpolated_ = false;
     return state_ == SupervisorState::enabled && !homing_.is_active() && axis_.start(plan);
   }
-  /// A homed axis plans no move beyond its travel; an axis that is not homed plans none longer than the whole travel.
+  /// No move leads beyond the travel (TravelMonitor).
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
-    if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, Refusal::outside_travel};
+    if (!may_reach(target.counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_to(target);
   }
   constexpr MovePlanResult plan_move_by(std::int64_t counts, std::int32_t unhomed_share = kWholeVelocity) const {
     const std::int64_t here = axis_.telemetry().reference.counts;
-    const TravelMonitor<Scalar>& travel = monitors_.travel();
-    if (is_homed() ? !travel.has_way(here, counts) : travel.is_longer(counts)) return {{}, Refusal::outside_travel};
+    if (!monitors_.travel().has_way(here, counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_by(counts, is_homed() ? kWholeVelocity : unhomed_share);
   }
   /// False at a limit of travel that a jog of this velocity would pass.
   constexpr bool has_room_towards(Scalar velocity) const {
-    return velocity == Scalar(0) || !is_homed() ||
+    return velocity == Scalar(0) ||
            monitors_.travel().has_room(axis_.telemetry().reference.counts, velocity > Scalar(0));
   }
   constexpr void stop() {
+    if (homing_.is_active()) monitors_.bound_travel_from(axis_.telemetry().encoder_counts);
     homing_.abandon();
     axis_.stop();
   }
@@ -106,7 +106,8 @@ class SupervisedAxis {
     if constexpr (kHasIndexPulse<Hal>) static_cast<void>(look_at_index());  // earlier pulses
     is_interpolated_ = false;
     is_guided_ = true;
-    axis_.forget_home();  // the limits of an old home must not apply
+    axis_.forget_home();
+    monitors_.unbound_travel();
     return true;
   }
   /// The operator states that the axis is at `position`, counts. False while it moves.
@@ -130,8 +131,8 @@ class SupervisedAxis {
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
   constexpr CountPosition leading() const { return axis_.leading(); }  ///< as of Axis
-  /// A position that a path may lead to: within the travel of a homed axis.
-  constexpr bool may_reach(std::int64_t counts) const { return !is_homed() || monitors_.travel().is_inside(counts); }
+  /// Whether a path or a move may lead there.
+  constexpr bool may_reach(std::int64_t counts) const { return monitors_.travel().is_inside(counts); }
 
   /// The next step is a step_with() of this increment.
   constexpr void lead(Increment increment) {
@@ -232,7 +233,6 @@ class SupervisedAxis {
 
   /// Ends a jog so early that the play of a loop that holds its position stays within the limit.
   [[gnu::noinline]] constexpr void keep_inside() {
-    if (!is_homed()) return;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
     axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
   }
@@ -291,7 +291,7 @@ class SupervisedAxis {
 
   constexpr void count_from(std::int64_t origin) {
     axis_.set_home(origin);
-    monitors_.forget_travel();
+    monitors_.bound_travel_by_limits();
     standstill_.shift(origin);
     stop_end_.shift(origin);
   }

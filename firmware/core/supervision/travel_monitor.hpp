@@ -1,6 +1,7 @@
 // Monitors the ends of travel: switches and limits, by the encoder's motion.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -12,9 +13,10 @@
 
 namespace firmware {
 
-/// The limits apply once the axis is homed, the switches always. Beyond an end an axis may stand still and move back,
-/// but not move farther out, by command or by itself: the limit is the innermost position since it passed the end, plus
-/// a little play for a loop that holds its position.
+/// A homed axis keeps to its limits. One that is not homed may leave the place where it was enabled by no more than the
+/// distance between the limits; while it homes, the sequence limits its travel. The switches always apply. Beyond an
+/// end an axis may stand still and move back, but not move farther out, by command or by itself: the limit is the
+/// innermost position since it passed the end, plus a little play for a loop that holds its position.
 template <typename Scalar>
 class TravelMonitor {
  public:
@@ -22,14 +24,12 @@ class TravelMonitor {
   /// reference.
   constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop, std::int64_t beyond = 0) {
     beyond_ = beyond;
-    min_counts_ = p.monitors.travel_min_counts;
-    max_counts_ = p.monitors.travel_max_counts;
+    limits_ = {p.monitors.travel_min_counts, p.monitors.travel_max_counts};
     play_ = play_in_counts(p);
     positive_end_.configure(p.monitors.input_samples);
     negative_end_.configure(p.monitors.input_samples);
-    const std::int64_t margin = stop + play_ + error_in_counts(p);
-    far_inside_ = CountRange(min_counts_ + margin, max_counts_ - margin);
-    restart();
+    margin_ = stop + play_ + error_in_counts(p);
+    bound_by_limits();
   }
 
   /// A quarter of the following error allowed at standstill, and two counts.
@@ -63,14 +63,19 @@ class TravelMonitor {
   constexpr bool has_way(std::int64_t here, std::int64_t counts) const {
     return counts <= max_counts_ - here && counts >= min_counts_ - here;
   }
-  /// A distance that does not fit the travel from any position.
-  constexpr bool is_longer(std::int64_t way) const {
-    const std::int64_t whole = max_counts_ - min_counts_;
-    return way > whole || way < -whole;
-  }
   constexpr std::int64_t play() const { return play_; }
   constexpr std::int64_t min_counts() const { return min_counts_; }
   constexpr std::int64_t max_counts() const { return max_counts_; }
+
+  /// For an axis that is homed from now on.
+  constexpr void bound_by_limits() { keep_between(limits_[0], limits_[1]); }
+  /// For an axis that is not homed and stands here.
+  constexpr void bound_from(std::int64_t here) {
+    const std::int64_t whole = limits_[1] - limits_[0];
+    keep_between(here - whole, here + whole);
+  }
+  /// For a homing sequence.
+  constexpr void unbound() { keep_between(-kAnywhere, kAnywhere); }
 
   constexpr void restart() {
     upper_bound_ = std::numeric_limits<std::int64_t>::max();
@@ -84,16 +89,25 @@ class TravelMonitor {
     return watch_ends(seen, switches);
   }
 
-  /// Whether a homed axis could reach an end before it has stopped, or whether this is unknown.
+  /// Whether the axis could reach an end before it has stopped, or whether this is unknown.
   constexpr bool is_near_end() const { return is_near_end_; }
 
  private:
+  static constexpr std::int64_t kAnywhere = std::int64_t{1} << 60;
+
+  constexpr void keep_between(std::int64_t least, std::int64_t most) {
+    min_counts_ = least;
+    max_counts_ = most;
+    far_inside_ = CountRange(least + margin_, most - margin_);
+    restart();
+  }
+
   [[gnu::noinline]] constexpr AxisFault watch_ends(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const std::int64_t counts = seen.encoder_counts;
     const bool at_positive_end = positive_end_.filtered(switches.positive_end);
     const bool at_negative_end = negative_end_.filtered(switches.negative_end);
-    const bool is_above = at_positive_end || (seen.homed && counts > max_counts_ + beyond_);
-    const bool is_below = at_negative_end || (seen.homed && counts < min_counts_ - beyond_);
+    const bool is_above = at_positive_end || counts > max_counts_ + beyond_;
+    const bool is_below = at_negative_end || counts < min_counts_ - beyond_;
     is_near_end_ =
         is_above || is_below || !is_far_inside(seen) || positive_end_.is_pending() || negative_end_.is_pending();
     if (is_above) {
@@ -114,12 +128,14 @@ class TravelMonitor {
   }
 
   constexpr bool is_far_inside(const AxisTelemetry<Scalar>& seen) const {
-    return !seen.homed || far_inside_.contains(seen.encoder_counts);
+    return far_inside_.contains(seen.encoder_counts);
   }
 
   CountRange far_inside_;  ///< with room for any stop and any following error
   bool is_near_end_ = true;
   InputFilter positive_end_, negative_end_;
+  std::array<std::int64_t, 2> limits_{};  ///< of the homed axis
+  std::int64_t margin_ = 0;
   std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0, beyond_ = 0;
   std::int64_t upper_bound_ = 0, lower_bound_ = 0;
 };

@@ -93,6 +93,19 @@ TEST(FaultLog, LosesNoFaultToTheTimeThatItCounts) {
   EXPECT_EQ(again.entry(0)->number, 4u);
 }
 
+/// 80 of its 96 places are used, so that the next start-up begins the other sector, and the one after it none.
+TEST(FaultLog, KeepsTheTimeInASectorThatAStartUpBegins) {
+  SimulatedFlash flash = blank_flash();
+  Log log = log_at_start(flash);
+  for (std::uint32_t k = 1; k <= 80; ++k) ASSERT_TRUE(log.add(time_alone(360 * k)));
+  const std::size_t before = flash.operations();
+  EXPECT_EQ(log_at_start(flash).run_s(), 360u * 80);
+  const std::size_t begun = flash.operations();
+  EXPECT_GT(begun, before);
+  EXPECT_EQ(log_at_start(flash).run_s(), 360u * 80);
+  EXPECT_EQ(flash.operations(), begun) << "no erase without need";
+}
+
 /// The sector that is erased next must be the one without the newest entries, also after a cut.
 TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
   SimulatedFlash before = blank_flash();

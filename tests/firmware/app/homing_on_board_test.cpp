@@ -196,6 +196,35 @@ TYPED_TEST(HomingOfABoard, TravelLimitsAndCoggingWaitForIt) {
       << "the jog ends inside";
 }
 
+/// The limits are 2 mm apart, the switch is 5 mm away.
+TYPED_TEST(HomingOfABoard, ASearchIsLimitedByItsOwnTravelAndAnAbandonedOneByThatOfTheAxis) {
+  this->start(1);
+  ParameterValues values = this->bench.application.active();
+  ASSERT_EQ(this->bench.ask(MessageType::disable, firmware::AxesRequest{1}).status, Status::ok);
+  this->run(300);
+  set(values, "x.monitor.travel_max", 1.0);
+  set(values, "x.monitor.travel_min", -1.0);
+  set(values, "x.homing.position", 0.0);
+  this->start(values);
+  ASSERT_EQ(this->home(false), Status::ok);
+  this->run(200);
+  ASSERT_EQ(this->bench.ask(MessageType::stop).status, Status::ok);
+  this->run(500);
+  const double from_mm = this->bench.board.plant(0).truth().x;
+  EXPECT_GT(from_mm, 2.0);
+  ASSERT_EQ(this->bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 5.0F}).status, Status::ok);
+  this->run(2000);
+  EXPECT_NEAR(this->bench.board.plant(0).truth().x - from_mm, 1.7, 0.4) << "2 mm from the stop";
+  ASSERT_EQ(this->bench.ask(MessageType::jog, firmware::JogRequest{0, {}, -5.0F}).status, Status::ok);
+  this->run(500);
+  ASSERT_EQ(this->bench.ask(MessageType::stop).status, Status::ok);
+  this->run(500);
+  ASSERT_EQ(this->home(false), Status::ok);
+  this->run(6000);
+  EXPECT_EQ(this->fault(), AxisFault::none);
+  EXPECT_TRUE(this->is_homed());
+}
+
 TEST(HomeIsLost, WhereTheEncoderMayHaveMissedCounts) {
   for (const auto fault :
        {AxisFault::encoder_invalid, AxisFault::encoder_jump, AxisFault::encoder_tachometer_disagreement})

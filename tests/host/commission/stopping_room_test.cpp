@@ -63,6 +63,24 @@ TEST(StoppingRoom, AnAxisThatFallsIsRefusedAtAnySpeedUnlessABrakeCatchesItInTime
   EXPECT_NE(refusal(hanging, 100.0, 10.0), "");
 }
 
+/// 1 Nm of weight against 0.2 Nm of friction.
+TEST(FeedbackAtRest, AnAxisThatFallsMustNoticeADeadEncoder) {
+  host::StoppingFigures hanging = kLight;
+  hanging.weight = 1.0;
+  EXPECT_NO_THROW(host::check_feedback_at_rest(hanging, true));
+  EXPECT_NO_THROW(host::check_feedback_at_rest(kLight, false)) << "it stays where it is";
+  for (const bool brake : {false, true}) {
+    hanging.brake = brake;
+    try {
+      host::check_feedback_at_rest(hanging, false);
+      ADD_FAILURE() << "accepted";
+    } catch (const host::Failure& failure) {
+      EXPECT_EQ(failure.code, host::ExitCode::refused);
+      EXPECT_THAT(failure.what(), HasSubstr("encoder.fault_input"));
+    }
+  }
+}
+
 TEST(StoppingRoom, WithoutAnOvertravelNothingIsRefusedButTheWayIsTold) {
   const std::string said = host::check_stopping_room(kLight, 250.0, {}, "mm");
   EXPECT_THAT(said, HasSubstr("moves on for 982 mm"));

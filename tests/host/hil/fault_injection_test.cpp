@@ -32,9 +32,11 @@ struct Worst {
     const auto band = std::min(static_cast<std::size_t>(outcome.speed_mm_s / 50.0), extra_mm_by_speed.size() - 1);
     extra_mm_by_speed[band] = std::max(extra_mm_by_speed[band], outcome.beyond_mm);
   }
-  void print(int trials) const {
-    std::printf("%d trials: slowest stop %.3f s beyond the formula (%s)\nlongest way %.1f mm beyond it (%s)\n", trials,
-                extra_s, slowest.c_str(), extra_mm, longest.c_str());
+  /// `seeds`: from 0 up to this one, some left out.
+  void print(int trials, int seeds) const {
+    std::printf(
+        "%d trials, seeds 0 to %d: slowest stop %.3f s beyond the formula (%s)\nlongest way %.1f mm beyond it (%s)\n",
+        trials, seeds - 1, extra_s, slowest.c_str(), extra_mm, longest.c_str());
     for (std::size_t band = 0; band < extra_mm_by_speed.size(); ++band)
       std::printf("%s%zu mm/s %.1f mm", band == 0 ? "by speed, from: " : ", ", 50 * band, extra_mm_by_speed[band]);
     std::printf("\nsped up for %.4f s at most (%s)\n", gain_s, fastest.c_str());
@@ -100,8 +102,9 @@ bool needs(const FaultTrial& trial, Needs what) {
          (trial.second.injection != nullptr && trial.second.injection->needs == what);
 }
 
-/// Without a tachometer or brake, a dead encoder hides the effect of a stuck converter until the loop closes. A ready
-/// contact that cannot close hides an amplifier that drives by itself.
+/// Without a tachometer or its receivers' report, a dead encoder hides the effect of a stuck converter until the loop
+/// closes. A ready contact that cannot close hides an amplifier that drives by itself. If both sensors die before the
+/// loop closes, and no receivers report it, nothing shows that a weight moves the axis.
 bool is_blind(const FaultTrial& trial) {
   if (trial.second.injection == nullptr || trial.first.axis != trial.second.axis) return false;
   const auto are = [&](std::string_view one, std::string_view other) {
@@ -109,7 +112,11 @@ bool is_blind(const FaultTrial& trial) {
     return (first == one && second == other) || (first == other && second == one);
   };
   if (are("unready", "amplifier_stuck")) return true;
-  return !trial.tachometer && !trial.start.brake && trial.start.ready_ms != 0 &&
+  const bool may_be_open = trial.motion == TrialMotion::self_test || trial.motion == TrialMotion::ready ||
+                           trial.motion == TrialMotion::starting || trial.motion == TrialMotion::stopping;
+  if (may_be_open && trial.weight_Nm != 0.0 && !trial.encoder_fault_input && are("encoder_cut", "tachometer_dead"))
+    return true;
+  return !trial.tachometer && !trial.encoder_fault_input && trial.start.ready_ms != 0 &&
          (are("encoder_cut", "dac_stuck") || are("encoder_cut", "amplifier_offset") ||
           are("encoder_cut", "amplifier_stuck"));
 }
@@ -122,7 +129,8 @@ void set_up_start(FaultTrial& trial, Random& random) {
     trial.motion = TrialMotion::starting;
     trial.start.brake = false;
   }
-  trial.tachometer = trial.tachometer || trial.start.brake;  // as the board requires
+  trial.encoder_fault_input = needs(trial, Needs::encoder_fault_input) || any_of(random, 0, 2) == 0;
+  if (trial.start.brake && !trial.encoder_fault_input) trial.tachometer = true;  // as the board requires
   trial.start.ready_ms = any_of(random, 0, 250);
   if (either(random) && trial.motion != TrialMotion::starting) trial.start.ready_ms = 0;
   if (trial.start.ready_input || trial.motion == TrialMotion::starting)
@@ -180,7 +188,7 @@ TEST(AnyFault, EndsWithBothAxesStandingAndNamesItsCause) {
     worst.add(trial, outcome);
     EXPECT_EQ(what_is_wrong(trial, outcome), "") << "seed " << number;
   }
-  worst.print(trials);
+  worst.print(trials, trials);
 }
 
 /// Every fault before, with and after every other. Runs one trial for each pair and each of the two kinds of axes;
@@ -189,8 +197,8 @@ TEST(AnyTwoFaults, EndWithBothAxesStandingAndTheFirstCauseNamed) {
   Worst worst;
   const int wanted = trials_asked_for(1000 / kShort);
   const auto all = host::injections();
-  int trials = 0;
-  for (int number = 0; trials < wanted; ++number) {
+  int trials = 0, number = 0;
+  for (; trials < wanted; ++number) {
     // Visits the pairs in steps that are coprime to their number, so that a shorter run samples them evenly.
     const std::size_t pairs = all.size() * all.size();
     const std::size_t pair = static_cast<std::size_t>(number) * 101 % pairs;
@@ -210,7 +218,7 @@ TEST(AnyTwoFaults, EndWithBothAxesStandingAndTheFirstCauseNamed) {
     EXPECT_EQ(what_is_wrong(trial, outcome), "") << "seed " << number;
     ++trials;
   }
-  worst.print(trials);
+  worst.print(trials, number);
 }
 
 /// Every pair with its first fault in every sample of enabling, and of a stop from a jog, the second 0 to 60 samples
@@ -250,7 +258,7 @@ TEST(AnyTwoFaults, AtEveryMomentOfEnablingAndDisablingDoTheSame) {
     worst.add(trial, outcome);
     EXPECT_EQ(what_is_wrong(trial, outcome), "") << "number " << number;
   }
-  worst.print(wanted);
+  worst.print(wanted, wanted);
 }
 
 /// A dead encoder that nothing reports, on an axis without a tachometer.
@@ -266,6 +274,32 @@ TEST(DeadEncoder, LetsASlowJogGoOnForATenthOfItsPitchAtMost) {
       EXPECT_EQ(outcome.fault, firmware::AxisFault::command_without_motion) << trial.text();
       EXPECT_LT(outcome.whole_way_mm, 10.0) << trial.text();
     }
+  }
+}
+
+/// The receivers of an encoder that is unplugged at rest report it, so that the brake catches the weight. Where both
+/// sensors die before an axis is enabled, nothing else would (is_blind).
+TEST(DeadEncoder, OfAnAxisUnderWeightIsFoundAtRestByItsReceivers) {
+  for (const bool light : {false, true}) {
+    const FaultTrial trial{.first = {host::find_injection("encoder_cut"), 0, 0.0},
+                           .second = {},
+                           .motion = TrialMotion::standing,
+                           .tachometer = false,
+                           .encoder_fault_input = true,
+                           .start = {.brake = true},
+                           .weight_Nm = light ? 3.0 : 5.0,
+                           .light = light};
+    const TrialOutcome outcome = host::run_trial(trial);
+    EXPECT_EQ(what_is_wrong(trial, outcome), "");
+    EXPECT_EQ(outcome.fault, firmware::AxisFault::encoder_invalid) << trial.text();
+    EXPECT_LE(outcome.reaction_s, 0.0041) << "the time of the input filter, and a period: " << trial.text();
+    FaultTrial both = trial;
+    both.second = {host::find_injection("tachometer_dead"), 0, 0.0};
+    both.motion = TrialMotion::ready;
+    both.tachometer = true;
+    const TrialOutcome found = host::run_trial(both);
+    EXPECT_EQ(what_is_wrong(both, found), "");
+    EXPECT_EQ(found.fault, firmware::AxisFault::encoder_invalid) << both.text();
   }
 }
 
