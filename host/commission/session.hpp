@@ -63,6 +63,7 @@ struct CommissionRun {
 struct CommissionLoop {
   AxisDesign design;
   ControlFilterChoice filters;
+  std::optional<double> modulus = {};  ///< margin on the measured response
 };
 
 /// Result of the diagnosis for the following steps of the same command.
@@ -90,6 +91,9 @@ class CommissionSession {
   /// end by itself.
   Record record(const CommissionRun& run);
 
+  /// The same; empty, with the reason, if the axis stopped with a fault, which is then cleared.
+  std::optional<Record> try_record(const CommissionRun& run, std::string& stopped_because);
+
   /// The same for a planned run.
   Record record_plan(const RunPlan& run, const std::string& file);
 
@@ -107,6 +111,10 @@ class CommissionSession {
   /// A controller of modest bandwidth, because delays and resonances are not known yet.
   CommissionLoop first_loop(const sim::DriveDescription& model) const;
   DesignOptions first_options() const;
+  /// The first options with the estimator that was chosen on the machine, if one was.
+  DesignOptions tuned_options() const;
+  /// The tuned options if the last comparison kept them; otherwise the first options.
+  DesignOptions kept_options() const;
   /// Plans limits of motion from `model` and the box and stores them in the folder. They are equal for all sets of
   /// parameters, so that the motions are the same. Throws Failure(refused) if friction needs all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);

@@ -20,7 +20,8 @@ class OwnMachine : public sim::ForeignMotion {
   bool counts_backward = false;
   double cogging_Nm = 0.0;  ///< amplitude, with a period of 4 mm
   double weight_Nm = 0.0;
-  double seizes_at_s = HUGE_VAL;  ///< machine time at which its bearing seizes
+  double tachometer_deviation = 0.1;  ///< deviation of the speed's noise in motion, rad/s
+  double seizes_at_s = HUGE_VAL;      ///< machine time at which its bearing seizes
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
@@ -33,6 +34,7 @@ class OwnMachine : public sim::ForeignMotion {
   }
 
   double position() const { return x_; }
+  void seed(std::uint32_t seed) { random_.seed(seed); }  ///< of the speed's noise
 
  private:
   void move(double dt) {
@@ -46,7 +48,7 @@ class OwnMachine : public sim::ForeignMotion {
     const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
     x_ += kLead * dt * (w_ + w) / 2.0;
     w_ = w_ * w < 0.0 ? 0.0 : w;
-    noisy_ = 0.1 * normal_(random_);
+    noisy_ = tachometer_deviation * normal_(random_);
   }
 
   std::optional<double> u_V_;
