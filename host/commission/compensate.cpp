@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/app/parameters/axis_values.hpp"
+#include "host/commission/estimator_choice.hpp"
 #include "host/commission/following.hpp"
 #include "host/commission/steps.hpp"
 #include "host/exit_codes.hpp"
@@ -21,6 +23,7 @@ struct Trial {
   std::string params, record, again;  ///< file names without the folder
   bool is_tuned = false;              ///< with the estimator that tune_estimator() chose
   firmware::ParameterValues values;
+  Compliance compliance;
   std::optional<FollowingError> error, repeated;
   std::string stopped_because;
 
@@ -29,13 +32,8 @@ struct Trial {
   double spread() const { return std::abs(error->rms_um - repeated->rms_um); }
   double best() const { return std::min(error->rms_um, repeated->rms_um); }
   double worst() const { return std::max(error->rms_um, repeated->rms_um); }
+  double least_N_um() const { return 1.0 / compliance.um_per_N; }
 };
-
-/// Whether every run of `one` is better than every run of `other` by more than the repeatability.
-bool is_better(const Trial& one, const Trial& other) {
-  if (!one.is_whole() || !other.is_whole()) return one.is_whole();
-  return other.best() - one.worst() > std::max(one.spread(), other.spread());
-}
 
 class Comparison {
  public:
@@ -65,7 +63,9 @@ class Comparison {
     add("after", "with everything", "new-params.toml", is_tuned,
         session_.design(after, raised_loop(session_, after, tuned), "new-params.toml"));
     // A faster loop also amplifies sensor noise; try the slower loop if that outweighs the gain.
-    const auto is_gain = [&](const Trial& trial) { return trial.name != "loop" && is_better(trial, trials_.front()); };
+    const auto is_gain = [&](const Trial& trial) {
+      return trial.name != "loop" && !is_too_soft(trial) && is_better(trial, trials_.front());
+    };
     if (is_raised && std::ranges::none_of(trials_, is_gain))
       add("first-loop", "with the better model and the first loop", "first-loop-params.toml", false,
           session_.design(after, session_.first_loop(after), "first-loop-params.toml"));
@@ -74,11 +74,28 @@ class Comparison {
   }
 
  private:
+  /// Whether every run of `one` deviates less than every run of `other`, by more than the repeatability.
+  bool is_better(const Trial& one, const Trial& other) const {
+    if (!one.is_whole() || !other.is_whole()) return one.is_whole();
+    const std::optional<double> force_N = session_.options().force_N;
+    return deviation_um(other.best(), other.compliance, force_N) - deviation_um(one.worst(), one.compliance, force_N) >
+           std::max(one.spread(), other.spread());
+  }
+
+  /// Whether the tuned estimator makes the axis softer than the first one does, where no force says what that costs.
+  bool is_too_soft(const Trial& trial) const {
+    const auto untuned = std::ranges::find(trials_, "untuned", &Trial::name);
+    return trial.is_tuned && !session_.options().force_N && untuned != trials_.end() &&
+           is_softer(trial.compliance, untuned->compliance);
+  }
+
   void add(const std::string& name, const std::string& what, const std::string& params, bool is_tuned,
            firmware::ParameterValues values) {
     trials_.push_back(
-        {name, what, params, name + ".csv", name + "-again.csv", is_tuned, std::move(values), {}, {}, {}});
+        {name, what, params, name + ".csv", name + "-again.csv", is_tuned, std::move(values), {}, {}, {}, {}});
     Trial& trial = trials_.back();
+    trial.compliance = compliance_with(session_, read_model(folder_.require("improved.toml", "improve")),
+                                       firmware::axis_parameters<float>(trial.values.axis(session_.options().axis)));
     session_.download(trial.values);
     trial.error = tried(trial, trial.record);
     if (trial.error) trial.repeated = tried(trial, trial.again);
@@ -98,10 +115,10 @@ class Comparison {
   /// The kept set; if it is the old one, the last that was tried.
   const Trial& after() const { return is_new() ? kept() : trials_.back(); }
 
-  /// Selects the set that stays on the board: none is better by is_better().
+  /// Selects the set that stays on the board: none that may stay is better by is_better().
   void decide(bool was_fitted) {
     for (std::size_t i = 0; i < trials_.size(); ++i)
-      if (is_better(trials_[i], kept())) kept_ = i;
+      if (!is_too_soft(trials_[i]) && is_better(trials_[i], kept())) kept_ = i;
     session_.download(!is_new() && was_fitted ? session_.with_file(folder_.path("before-params.toml")) : kept().values);
     session_.disable();
     if (session_.options().save) session_.board().save();
@@ -118,6 +135,8 @@ class Comparison {
                       {"rms_um", trial.is_whole() ? nlohmann::json(trial.mean()) : nlohmann::json()},
                       {"largest_um", trial.error ? nlohmann::json(trial.error->largest_um) : nlohmann::json()},
                       {"repeats_um", trial.is_whole() ? nlohmann::json(trial.spread()) : nlohmann::json()},
+                      {"compliance_um_N", trial.compliance.um_per_N},
+                      {"too_soft", is_too_soft(trial)},
                       {"record", trial.record},
                       {"stopped_because", trial.stopped_because}});
       for (const std::string& file : {trial.params, trial.record, trial.again})
@@ -150,7 +169,14 @@ class Comparison {
       said += trial.is_whole() ? fmt::format(", {:.3g} {}", trial.mean(), trial.what)
                                : fmt::format(", and {} the axis stopped: {}", trial.what, trial.stopped_because);
     }
-    said += is_new() ? "." : ": no gain beyond the difference between equal runs.";
+    said += is_new() ? "." : ": no set that may stay gains more than equal runs differ.";
+    said += fmt::format(" Least stiffness against a process force: {:.3g} N/µm before", before().least_N_um());
+    if (is_new()) said += fmt::format(", {:.3g} now", kept().least_N_um());
+    said += ".";
+    for (const Trial& trial : trials_)
+      if (is_too_soft(trial))
+        said += fmt::format(" The set {} may not stay: the tuned estimator makes the axis softer, {:.3g} N/µm.",
+                            trial.what, trial.least_N_um());
     return said + fmt::format(" The {} is on the board{}.", is_new() ? "set " + kept().what : "old set",
                               session_.options().save ? ", and saved"
                                                       : " and not saved: `axistool save` keeps it after power-off");

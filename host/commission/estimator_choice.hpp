@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/record/record.hpp"
+#include "host/response/compliance.hpp"
 
 namespace host {
 
@@ -19,12 +20,20 @@ struct TrackingTest {
   double error_um = 0.0;              ///< following error, RMS; mean of two equal runs
   double repeats_um = 0.0;            ///< difference between these runs
   double noise_V = 0.0;               ///< of the command, RMS
+  Compliance compliance;              ///< of the designed loop
   std::string unusable_because;       ///< no margin, or a fault; the figures of the runs are then missing
 };
 
+/// What an estimator must allow.
+struct EstimatorDemand {
+  Compliance first;               ///< with the first estimator, at the same margin
+  std::optional<double> force_N;  ///< amplitude of the process force that the axis has to bear, if it is known
+  double most_noise_V = 0.0;      ///< of the command, RMS
+};
+
 struct EstimatorChoice {
-  std::optional<std::size_t> knee;  ///< empty if no value is usable
-  std::string why;                  ///< without a full stop
+  std::optional<std::size_t> value;  ///< empty if no value is allowed
+  std::string why;                   ///< without a full stop
 };
 
 /// Noise of the command, V RMS of one run: what differs between two runs of the same motion. From the median of its
@@ -32,14 +41,23 @@ struct EstimatorChoice {
 /// record without a moving reference.
 double command_noise_V(const Record& once, const Record& again);
 
-/// `tests`: in the order of rising Rwd. Starts at the calmest value that was run. Takes the next one as long as its
-/// error is smaller by more than equal runs differ, and by a larger factor than that by which its noise is larger. The
-/// product of error and noise is then at its first minimum, where the curve has the slope -1 on logarithmic scales
-/// (Regińska, SIAM J. Sci. Comput. 17, 1996, p. 740, for the corner of an L-curve). Values beyond the next one have no
-/// influence.
-EstimatorChoice choose_estimator(const std::vector<TrackingTest>& tests);
+/// Deviation from the reference, µm RMS: following error and, independent of it, the response to a force of this
+/// amplitude at the frequency where the axis is softest.
+double deviation_um(double error_um, const Compliance& compliance, std::optional<double> force_N);
 
-/// {"tried": [...], "chosen_V2", "why"}; figures of unusable values are null.
-nlohmann::json tracking_json(const std::vector<TrackingTest>& tests, const EstimatorChoice& choice);
+/// By more than loops differ whose bandwidths are one step of highest_bandwidth() apart.
+bool is_softer(const Compliance& one, const Compliance& other);
+
+/// `tests`: in the order of rising Rwd. Of the values that the demand allows, takes the calmest one whose deviation
+/// exceeds the least one by no more than equal runs differ: noise of the command counts by the motion that it causes,
+/// and beyond that point it buys nothing. A larger Rwd rejects disturbances better (p. 1503), which the following error
+/// without a process does not show. At a given margin, compliance and noise trade one for one over decades of Rwd, so
+/// that their curve has no corner: a force sets the exchange, by the deviation under it; without one, no value may make
+/// the axis softer than the first estimator does.
+EstimatorChoice choose_estimator(const std::vector<TrackingTest>& tests, const EstimatorDemand& demand);
+
+/// {"tried": [...], "chosen_V2", "why", …}; figures of unusable values are null.
+nlohmann::json tracking_json(const std::vector<TrackingTest>& tests, const EstimatorDemand& demand,
+                             const EstimatorChoice& choice);
 
 }  // namespace host

@@ -31,7 +31,7 @@ inline constexpr std::array<CommissionStepText, 15> kCommissionSteps{{
     {"diagnose", "which effect is missing"},
     {"separate", "if several explanations remain: plan and make the run that separates them"},
     {"improve", "significant effects added, all parameters fitted again"},
-    {"estimator", "five disturbance variances of the estimator: following error against noise of the command"},
+    {"estimator", "five disturbance variances of the estimator: following error, stiffness, noise of the command"},
     {"compensate", "the same motion with the old and the new parameters; the better set stays"},
     {"page", "one page"},
 }};

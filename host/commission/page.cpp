@@ -142,16 +142,19 @@ BarChart errors_chart(const Page& page) {
   chart.title = "Following error of this axis, RMS";
   chart.caption =
       "The same jogs, twice with each set of parameters; ±: difference between the two RMS values. Not repeatable: RMS "
-      "of the difference between equal runs, which no parameter can reduce. The base model has only inertia and "
-      "friction.";
+      "of the difference between equal runs, which no parameter can reduce. N/µm: least stiffness against a process "
+      "force. The base model has only inertia and friction.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
     if (!set["rms_um"].is_null())
       chart.rows.push_back({set_title(page, set),
                             {set["rms_um"].get<double>()},
-                            fmt::format("± {} µm{}", format_value(set["repeats_um"].get<double>(), 2),
-                                        set["name"] == page.errors["kept"] ? ", kept" : "")});
+                            fmt::format("± {} µm; {} N/µm{}", format_value(set["repeats_um"].get<double>(), 2),
+                                        format_value(1.0 / set["compliance_um_N"].get<double>()),
+                                        set["name"] == page.errors["kept"] ? ", kept"
+                                        : set["too_soft"]                  ? ", too soft"
+                                                                           : "")});
   chart.rows.push_back({"not repeatable", {page.not_repeatable()}, ""});
   return chart;
 }
@@ -218,10 +221,15 @@ Table steps_table(const Page& page) {
 
 ScatterPlot estimator_plot(const nlohmann::json& tests) {
   ScatterPlot plot;
-  plot.title = "Following error against noise of the command";
-  plot.caption = "A point for each disturbance variance Rwd, which grows along the line.";
+  const bool has_force = tests["force_N"].is_number();
+  plot.title = "Deviation against noise of the command";
+  plot.caption =
+      "A point for each disturbance variance Rwd, which grows along the line. The deviation is the following error" +
+      (has_force ? fmt::format(" and the response to a force of {:g} N at the softest frequency.",
+                               tests["force_N"].get<double>())
+                 : std::string("; a process force is not known."));
   plot.x = {"noise of the command", "mV"};
-  plot.y = {"following error", "µm"};
+  plot.y = {"deviation, RMS", "µm"};
   plot.logarithmic_x = plot.logarithmic_y = true;
   ScatterSeries tried{"tried", SeriesRole::measured, SeriesStyle::line_and_points, {}, {}, {}, {}},
       chosen{"chosen", SeriesRole::after, SeriesStyle::points, {}, {}, {}, {}};
@@ -230,7 +238,7 @@ ScatterPlot estimator_plot(const nlohmann::json& tests) {
     const bool is_chosen = test["rwd_V2"] == tests["chosen_V2"];
     for (ScatterSeries* series : {&tried, &chosen}) {
       if (series == &chosen && !is_chosen) continue;
-      const double error_um = test["rms_um"], half_um = test["repeats_um"].get<double>() / 2.0;
+      const double error_um = test["deviation_um"], half_um = test["repeats_um"].get<double>() / 2.0;
       series->x.push_back(1e3 * test["command_noise_V"].get<double>());
       series->y.push_back(error_um);
       series->lower.push_back(error_um - half_um);
@@ -244,7 +252,9 @@ ScatterPlot estimator_plot(const nlohmann::json& tests) {
 Table estimator_table(const nlohmann::json& tests) {
   Table table;
   table.title = "Disturbance variances that were tried";
-  table.headings = {"Rwd, V²", "estimator, Hz", "loop, Hz", "modulus margin", "following error, µm", "noise, mV", ""};
+  table.headings = {"Rwd, V²",        "estimator, Hz",       "loop, Hz",
+                    "modulus margin", "following error, µm", "stiffness, N/µm",
+                    "softest at, Hz", "noise, mV",           ""};
   const auto shown = [](const nlohmann::json& figure, double factor) {
     return figure.is_null() ? "–" : format_value(factor * figure.get<double>());
   };
@@ -256,7 +266,8 @@ Table estimator_table(const nlohmann::json& tests) {
                           is_run ? fmt::format("{} ± {}", shown(test["rms_um"], 1.0),
                                                format_value(test["repeats_um"].get<double>() / 2.0, 2))
                                  : "–",
-                          shown(test["command_noise_V"], 1e3),
+                          is_designed ? format_value(1.0 / test["compliance_um_N"].get<double>()) : "–",
+                          shown(test["softest_at_Hz"], 1.0), shown(test["command_noise_V"], 1e3),
                           test["rwd_V2"] == tests["chosen_V2"] ? "chosen"
                           : is_run                             ? ""
                           : is_designed                        ? "stopped by a fault"
@@ -268,14 +279,22 @@ Table estimator_table(const nlohmann::json& tests) {
 void add_estimator(Report& report, const Page& page) {
   if (!page.state.value("estimator", nlohmann::json()).is_object()) return;
   const nlohmann::json tests = page.session.folder().read_json("estimator.json");
-  report.section("How fast the estimator may be",
-                 tests["why"].get<std::string>() +
-                     ". A larger Rwd makes the estimate of the disturbance faster, and the command noisier "
-                     "(Erkorkmaz & Altintas 2001, p. 1503). These runs have the whole controller of the better model; "
-                     "estimator.json states why a value was not run. " +
-                     (page.state.value("estimator_kept", false)
-                          ? "In the last comparison it gained: it is on the board."
-                          : "In the last comparison it gained nothing: it is not on the board."));
+  report.section(
+      "How fast the estimator may be",
+      tests["why"].get<std::string>() +
+          ". A larger Rwd makes the estimate of the disturbance faster, so that process forces move the axis "
+          "less, and the command noisier (Erkorkmaz & Altintas 2001, p. 1503). Stiffness: least force on the "
+          "table per amplitude of the position, over the measured frequencies. At one margin, noise grows "
+          "about as stiffness does, so that the two alone favour no value. " +
+          (tests["force_N"].is_number()
+               ? "The given force decides: the calmest value with the least deviation under it. "
+               : "No process force was given (--force), so no value may make the axis softer than the first "
+                 "estimator does; of the others, the calmest one with the least following error. ") +
+          "These runs have the whole controller of the better model; estimator.json states why a value was "
+          "not run. " +
+          (page.state.value("estimator_kept", false)
+               ? "In the last comparison it gained: it is on the board."
+               : "In the last comparison it gained nothing, or made the axis softer: it is not on the board."));
   report.add(estimator_plot(tests));
   report.add(estimator_table(tests));
 }

@@ -212,4 +212,13 @@ CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescripti
   }
 }
 
+Compliance compliance_with(CommissionSession& session, const sim::DriveDescription& model,
+                           const firmware::AxisParameters<float>& controller) {
+  std::optional<AxisResponse> measured;
+  if (session.folder().has(kMeasured)) measured = read_response(session.folder().path(kMeasured));
+  const FinePlant drive =
+      measured && measured->fit ? fine_plant(measured->response, *measured->fit) : fine_plant(plant_of(model));
+  return largest_compliance(drive, AxisController(controller), rigid_axis(model), model.data.kind);
+}
+
 }  // namespace host

@@ -191,6 +191,7 @@ void CommissionSession::plan_limits(const sim::DriveDescription& model) {
     throw Failure(ExitCode::refused, "friction needs all of the box's volts: none remain for acceleration");
   const ReferenceLimits usual = ReferenceLimits::usual_for(model.data.kind);
   const double acceleration = std::min(usual.acceleration, available);
+  folder_.put("feedback_V", available * made.axis.inertia / (model.data.lead * made.axis.effort_per_volt));
   folder_.put("limits", {{"velocity", std::min(usual.velocity, options_.box.speed / kRideMargin)},
                          {"acceleration", acceleration},
                          {"jerk", acceleration * usual.jerk / usual.acceleration}});

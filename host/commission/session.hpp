@@ -37,8 +37,10 @@ struct CommissionOptions {
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, because delays are not known yet
   double modulus = 0.5;        ///< modulus margin to keep when the bandwidth is raised on the measured response
   std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
-  std::optional<double> overtravel = {};        ///< free beyond the box up to the hard stops, mm (m); empty: unknown
-  bool save = false;                            ///< save the better parameters in the board's flash
+  /// Amplitude of the process force on the table that the axis has to bear, N; empty: unknown.
+  std::optional<double> force_N = {};
+  std::optional<double> overtravel = {};  ///< free beyond the box up to the hard stops, mm (m); empty: unknown
+  bool save = false;                      ///< save the better parameters in the board's flash
 };
 
 /// Dialogue with the user.
@@ -145,6 +147,8 @@ class CommissionSession {
   /// Counts the time since `begin` as motion.
   void spend(std::chrono::steady_clock::time_point begin);
   ReferenceLimits limits() const;
+  /// Volts that the planned limits leave for the feedback.
+  double feedback_V() const { return folder_.document().at("feedback_V"); }
   /// Highest speeds of motions in this box, mm/s (m/s): held for a second; reached briefly.
   double steady_speed() const;
   double top_speed() const;

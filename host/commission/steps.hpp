@@ -6,6 +6,7 @@
 
 #include "host/commission/session.hpp"
 #include "host/record/measurements.hpp"
+#include "host/response/compliance.hpp"
 
 namespace host {
 
@@ -51,6 +52,10 @@ CommissionLoop measured_loop(CommissionSession& session, const sim::DriveDescrip
 /// The same; the first controller if no bandwidth keeps the margin.
 CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model,
                            const DesignOptions& options);
+
+/// Compliance of the axis with a controller, from the measured response; without one, from `model`.
+Compliance compliance_with(CommissionSession& session, const sim::DriveDescription& model,
+                           const firmware::AxisParameters<float>& controller);
 
 /// Makes the other training records (kTrainingFiles) and the validation records (kJudgingFiles).
 CommissionStepResult record_validation(CommissionSession& session);

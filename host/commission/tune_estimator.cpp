@@ -10,6 +10,7 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/tachometer.hpp"
 #include "host/model/model_file.hpp"
+#include "host/parameters/axis_parameters.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
 
@@ -51,8 +52,10 @@ class EstimatorStep {
     session_.ask("Estimator: the same two jogs with five variances of the disturbance, twice each.");
     for (const double factor : kFactors) tests_.push_back(test(factor * options_.disturbance_variance));
     session_.disable();
-    const EstimatorChoice choice = choose_estimator(tests_);
-    nlohmann::json document = tracking_json(tests_, choice);
+    const EstimatorDemand demand{compliance_of(raised_loop(session_, model_, session_.first_options())),
+                                 session_.options().force_N, session_.feedback_V() / kDeviations};
+    const EstimatorChoice choice = choose_estimator(tests_, demand);
+    nlohmann::json document = tracking_json(tests_, demand, choice);
     if (noise)
       document["tachometer_variance"] = {
           {"at_rest", noise->at_rest ? nlohmann::json(*noise->at_rest) : nlohmann::json()},
@@ -60,15 +63,23 @@ class EstimatorStep {
           {"used", noise->used()}};
     folder_.write_json(kFile, document);
     files_.emplace_back(kFile);
-    if (choice.knee)
+    if (choice.value)
       folder_.put("estimator",
-                  {{"rwd_V2", tests_[*choice.knee].disturbance_variance},
+                  {{"rwd_V2", tests_[*choice.value].disturbance_variance},
                    {"rw", options_.tach_variance ? nlohmann::json(*options_.tach_variance) : nlohmann::json()}});
     return {files_, choice.why + "." + (noise ? sentence(*noise) : "")};
   }
 
  private:
   static constexpr double kLeft = 12.0;  // jogs of the last comparison: five sets twice, and a reserve of two
+
+  /// Of the noise that must not take the command into saturation, for which the linear design does not hold (p. 1490):
+  /// 99.7 % of a normal distribution.
+  static constexpr double kDeviations = 3.0;
+
+  Compliance compliance_of(const CommissionLoop& loop) const {
+    return compliance_with(session_, model_, designed_parameters(model_, loop.design, loop.filters));
+  }
 
   /// Both directions slowly, where friction changes most, and fast.
   CommissionRun jogs(const std::string& file) const {
@@ -106,6 +117,7 @@ class EstimatorStep {
       test.bandwidth_Hz = loop.design.used.bandwidth_Hz;
       test.observer_Hz = loop.design.observer_fn_Hz.front();
       test.modulus = loop.modulus;
+      test.compliance = compliance_of(loop);
       make_runs(test, loop);
     } catch (const Failure& failure) {
       if (failure.code != ExitCode::refused || session_.talk().stop()) throw;
