@@ -89,7 +89,7 @@ nlohmann::json tracking_json(const std::vector<TrackingTest>& tests, const Estim
     const auto figure = [&](double value) {
       return test.unusable_because.empty() ? nlohmann::json(value) : nlohmann::json();
     };
-    const auto compliance = [&](double value) {
+    const auto designed = [&](double value) {
       return test.compliance.um_per_N > 0.0 ? nlohmann::json(value) : nlohmann::json();
     };
     tried.push_back({{"rwd_V2", test.disturbance_variance},
@@ -99,8 +99,11 @@ nlohmann::json tracking_json(const std::vector<TrackingTest>& tests, const Estim
                      {"rms_um", figure(test.error_um)},
                      {"repeats_um", figure(test.repeats_um)},
                      {"command_noise_V", figure(test.noise_V)},
-                     {"compliance_um_N", compliance(test.compliance.um_per_N)},
-                     {"softest_at_Hz", compliance(test.compliance.at_Hz)},
+                     {"compliance_um_N", designed(test.compliance.um_per_N)},
+                     {"softest_at_Hz", designed(test.compliance.at_Hz)},
+                     {"newton_per_V", designed(test.force.newton_per_V)},
+                     {"force_band_N", designed(test.force.band_N)},
+                     {"force_delay_s", designed(test.force.delay_s)},
                      {"deviation_um", figure(deviation_um(test.error_um, test.compliance, demand.force_N))},
                      {"unusable_because", test.unusable_because}});
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/identify/force_estimate.hpp"
 #include "host/record/record.hpp"
 #include "host/response/compliance.hpp"
 
@@ -21,6 +22,7 @@ struct TrackingTest {
   double repeats_um = 0.0;            ///< difference between these runs
   double noise_V = 0.0;               ///< of the command, RMS
   Compliance compliance;              ///< of the designed loop
+  ForceEstimate force;                ///< what its estimator says about a process force
   std::string unusable_because;       ///< no margin, or a fault; the figures of the runs are then missing
 };
 

@@ -118,6 +118,7 @@ class EstimatorStep {
       test.observer_Hz = loop.design.observer_fn_Hz.front();
       test.modulus = loop.modulus;
       test.compliance = compliance_of(loop);
+      test.force = force_estimate(loop.design, model_.data);
       make_runs(test, loop);
     } catch (const Failure& failure) {
       if (failure.code != ExitCode::refused || session_.talk().stop()) throw;
