@@ -55,20 +55,26 @@ std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& ta
   return models;
 }
 
+DesignOptions options_of(const AxisTask& task, DesignOptions options) {
+  if (task.disturbance_variance) options.disturbance_variance = *task.disturbance_variance;
+  if (task.tach_variance) options.tach_variance = task.tach_variance;
+  return options;
+}
+
 /// Variances that make all estimators equal in travel, speed and acceleration of the table: the noise of the worst
-/// sensors, and disturbances (in volts) that accelerate the table like those of the axis with the least acceleration
-/// per volt.
+/// sensors, and disturbances that accelerate the table like those of the axis on which they accelerate it least.
 std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescription>& models,
-                                            const DesignOptions& options) {
+                                            const std::vector<DesignOptions>& own) {
   std::vector<AxisDesign> designs;
-  double least_gain = HUGE_VAL, position = 0.0, speed = 0.0, command = 0.0;
+  double least_gain = HUGE_VAL, position = 0.0, speed = 0.0, command = 0.0, disturbance = HUGE_VAL;
   const auto gain = [&](std::size_t i) { return designs[i].axis.gain() * designs[i].axis.lead * unit_mm(models[i]); };
   for (std::size_t i = 0; i < models.size(); ++i) {
-    designs.push_back(design_axis(models[i], options));
+    designs.push_back(design_axis(models[i], own[i]));
     const DesignOptions& used = designs[i].used;
     const double length = unit_mm(models[i]), lead = designs[i].axis.lead * length;
     position = std::max(position, *used.position_variance * length * length);
     speed = std::max(speed, used.tach_variance.value_or(0.0) * lead * lead);
+    disturbance = std::min(disturbance, used.disturbance_variance * gain(i) * gain(i));
     if (gain(i) < least_gain) {
       least_gain = gain(i);
       command = *used.command_variance;
@@ -76,11 +82,10 @@ std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescript
   }
   std::vector<DesignOptions> list;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    DesignOptions one = options;
+    DesignOptions one = own[i];
     const double length = unit_mm(models[i]), lead = designs[i].axis.lead * length;
-    const double share = std::pow(least_gain / gain(i), 2);
-    one.disturbance_variance = options.disturbance_variance * share;
-    one.command_variance = command * share;
+    one.disturbance_variance = disturbance / (gain(i) * gain(i));
+    one.command_variance = command * std::pow(least_gain / gain(i), 2);
     one.position_variance = position / (length * length);
     if (designs[i].used.tach_variance) one.tach_variance = speed / (lead * lead);
     list.push_back(one);
@@ -232,7 +237,9 @@ MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOpt
   check(tasks);
   const std::vector<sim::DriveDescription> models = equal_sensors(tasks);
   const std::vector<sim::DriveDescription> controlled = equal_drives(models, options);
-  const std::vector<DesignOptions> equal = equal_estimators(controlled, options);
+  std::vector<DesignOptions> own;
+  for (const AxisTask& task : tasks) own.push_back(options_of(task, options));
+  const std::vector<DesignOptions> equal = equal_estimators(controlled, own);
   std::vector<FinePlant> drives;
   for (const AxisTask& task : tasks) drives.push_back(drive_of(task));
 
@@ -243,9 +250,9 @@ MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOpt
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     machine.matched.axes.push_back(
         loop_of(models[i], controlled[i], equal[i], common.loop.bandwidth_Hz, common.filters, drives[i]));
-    const Found best = best_loop({{tasks[i].model, options, drives[i]}}, {tasks[i]}, aim, options);
+    const Found best = best_loop({{tasks[i].model, own[i], drives[i]}}, {tasks[i]}, aim, own[i]);
     machine.own.axes.push_back(
-        loop_of(tasks[i].model, tasks[i].model, options, best.loop.bandwidth_Hz, best.filters, drives[i]));
+        loop_of(tasks[i].model, tasks[i].model, own[i], best.loop.bandwidth_Hz, best.filters, drives[i]));
   }
   machine.limited_by = reason(all, machine.own.axes, common, aim);
   for (LoopSet* set : {&machine.matched, &machine.own}) {

@@ -15,6 +15,8 @@ namespace host {
 struct AxisTask {
   sim::DriveDescription model;
   std::optional<AxisResponse> measured;  ///< measured response with a fit; if empty, the model is used
+  /// Rwd and Rw of this axis; if empty, those of DesignOptions.
+  std::optional<double> disturbance_variance = {}, tach_variance = {};
 };
 
 struct AxisLoop {
@@ -37,9 +39,9 @@ struct MachineDesign {
   std::string limited_by;  ///< cause that limits the bandwidth of the matched loop
 };
 
-/// `options`, `aim` and `limits` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods,
-/// refused if no common bandwidth meets the requirements or a loop would be unstable, and what design_axis() and
-/// drive_limits() throw.
+/// `options`, `aim` and `limits` apply to every axis, except for an axis's own variances. Throws Failure: usage for
+/// inconsistent names or sampling periods, refused if no common bandwidth meets the requirements or a loop would be
+/// unstable, and what design_axis() and drive_limits() throw.
 MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim,
                              const LimitWishes& limits = {});
 

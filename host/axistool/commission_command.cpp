@@ -30,7 +30,7 @@ struct CommissionArguments : DeviceArguments {
   std::string plant, folder, home, from, to;
   double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz, modulus = host::CommissionOptions{}.modulus;
   std::uint64_t seed = 1;
-  std::optional<double> overtravel;
+  std::optional<double> overtravel, force_N;
   bool save = false;
 };
 
@@ -144,6 +144,8 @@ Axis axis_of(const CommissionArguments& arguments, std::size_t i, const std::str
   options.save = arguments.save;
   if (folder.document().contains("overtravel")) options.overtravel = folder.document()["overtravel"];
   if (arguments.overtravel) options.overtravel = arguments.overtravel;
+  if (folder.document().contains("force_N")) options.force_N = folder.document()["force_N"];
+  if (arguments.force_N) options.force_N = arguments.force_N;
   std::string box = of_axis(arguments.boxes, i);
   if (box.empty()) box = folder.document().value("box", "");
   if (box.empty() && is_simulated(arguments)) box = usual_box(options.sheet.data.kind);
@@ -155,6 +157,7 @@ Axis axis_of(const CommissionArguments& arguments, std::size_t i, const std::str
   folder.put("axis", name);
   folder.put("box", box);
   if (options.overtravel) folder.put("overtravel", *options.overtravel);
+  if (options.force_N) folder.put("force_N", *options.force_N);
   host::write_model(options.sheet, kept);
   axis.machine = model.empty() ? options.sheet : host::read_drive(host::machine_file(model));
   return axis;
@@ -284,6 +287,12 @@ void add_commission(CLI::App& app) {
   command->add_option("--margin", arguments->modulus, "modulus margin to keep when the bandwidth is raised")
       ->capture_default_str()
       ->check(CLI::Range(0.2, 0.9));
+  command
+      ->add_option(
+          "--force", arguments->force_N,
+          "amplitude of the process force on the table that the axis has to bear, N: the estimator is tuned for "
+          "the least deviation under it (default: unknown; the axis stays as stiff as with the first estimator)")
+      ->check(CLI::PositiveNumber);
   command->add_option("--seed", arguments->seed, "seed of the simulated machine's noise")->capture_default_str();
   command->add_flag("--save", arguments->save, "save the better parameters in the board's flash");
   command

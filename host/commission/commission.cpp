@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<CommissionStepResult (*)(CommissionSession&), kCommissionSteps.size()> kWork{
     look,          identify_first,   control_first,     home_axis,     climb_ladder,
     find_friction, measure_response, record_validation, compare_first, diagnose_machine,
-    separate,      improve_model,    compensate,        write_page};
+    separate,      improve_model,    tune_estimator,    compensate,    write_page};
 
 /// Restores the former parameters of a board; ignores errors, because a step has already failed.
 void give_back(CommissionSession& session) noexcept {

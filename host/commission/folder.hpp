@@ -18,7 +18,7 @@ struct CommissionStepText {
 };
 
 /// The steps in their order.
-inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
+inline constexpr std::array<CommissionStepText, 15> kCommissionSteps{{
     {"look", "rights and faults, noise at standstill, direction and breakaway by a slow voltage ramp"},
     {"identify", "voltage steps in open loop: inertia, viscous and Coulomb friction"},
     {"control", "a first controller of modest bandwidth, downloaded but not saved"},
@@ -31,6 +31,7 @@ inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
     {"diagnose", "which effect is missing"},
     {"separate", "if several explanations remain: plan and make the run that separates them"},
     {"improve", "significant effects added, all parameters fitted again"},
+    {"estimator", "five disturbance variances of the estimator: following error, stiffness, noise of the command"},
     {"compensate", "the same motion with the old and the new parameters; the better set stays"},
     {"page", "one page"},
 }};

@@ -63,8 +63,10 @@ nlohmann::json match_loops(BoardClient& board, const std::vector<CommissionedAxi
   for (const CommissionedAxis& axis : axes) {
     tasks.push_back(task_of(axis));
     sessions.emplace_back(board, axis.options, talk, *axis.folder);
-    const DesignOptions own = sessions.back().first_options();
-    if (sessions.size() == 1 || own.bandwidth_Hz < options.bandwidth_Hz) options = own;
+    const DesignOptions own = sessions.back().kept_options();
+    if (sessions.size() == 1 || own.bandwidth_Hz < options.bandwidth_Hz) options.bandwidth_Hz = own.bandwidth_Hz;
+    tasks.back().disturbance_variance = own.disturbance_variance;
+    tasks.back().tach_variance = own.tach_variance;
     aim.modulus = axis.options.modulus;
   }
   const MachineDesign machine = [&] {

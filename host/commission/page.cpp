@@ -30,9 +30,14 @@ struct Page {
   nlohmann::json errors, comparison, improvement;
 
   const nlohmann::json& sets() const { return errors["sets"]; }
+  /// The set that is on the board; if the old one stayed, the last that was tried.
+  const nlohmann::json& last() const {
+    const auto kept = std::ranges::find_if(sets(), [&](const auto& set) { return set["name"] == errors["kept"]; });
+    return is_new() && kept != sets().end() ? *kept : sets().back();
+  }
   double before() const { return sets().front()["rms_um"]; }
-  bool has_after() const { return !sets().back()["rms_um"].is_null(); }
-  double after() const { return has_after() ? sets().back()["rms_um"].get<double>() : before(); }
+  bool has_after() const { return !last()["rms_um"].is_null(); }
+  double after() const { return has_after() ? last()["rms_um"].get<double>() : before(); }
   double not_repeatable() const { return errors["floor_um"]; }
   bool is_new() const { return state.value("kept", "") == "new"; }
 
@@ -89,14 +94,15 @@ std::vector<std::string> findings(const Page& page) {
   return sentences;
 }
 
-/// Shares of the gain from the bandwidth and from the model; empty if there was only one step.
+/// Shares of the gain from the loop and from the model; empty if there was only one step.
 std::string shares_of_gain(const Page& page) {
-  if (!page.is_new() || page.sets().size() < 3 || page.sets()[1]["rms_um"].is_null()) return {};
-  const double faster = page.sets()[1]["rms_um"];
-  if (!(faster < page.before()) || !(page.after() < faster)) return {};
-  return fmt::format("Of the gain of {} µm, the higher bandwidth contributes {} and the better model {}.",
-                     format_value(page.before() - page.after()), format_value(page.before() - faster),
-                     format_value(faster - page.after()));
+  if (page.errors["kept"] != "after" || page.sets()[1]["name"] != "loop" || page.sets()[1]["rms_um"].is_null())
+    return {};
+  const double tuned = page.sets()[1]["rms_um"];
+  if (!(tuned < page.before()) || !(page.after() < tuned)) return {};
+  return fmt::format("Of the gain of {} µm, the tuned loop contributes {} and the better model {}.",
+                     format_value(page.before() - page.after()), format_value(page.before() - tuned),
+                     format_value(tuned - page.after()));
 }
 
 Verdict verdict_of(const Page& page) {
@@ -125,13 +131,10 @@ Verdict verdict_of(const Page& page) {
   return verdict;
 }
 
-/// Changes of each set of parameters from the previous one.
-std::string set_title(const Page& page, const std::string& name) {
-  const bool is_first = page.sets().size() < 3;
-  if (name == "before")
+std::string set_title(const Page& page, const nlohmann::json& set) {
+  if (set["name"] == "before")
     return page.state.value("was_fitted", false) ? "before: as the board was" : "before: base model";
-  if (name == "bandwidth") return "with the bandwidth raised";
-  return is_first ? "after: with the better model" : "after: also with the better model";
+  return set["what"];
 }
 
 BarChart errors_chart(const Page& page) {
@@ -139,17 +142,19 @@ BarChart errors_chart(const Page& page) {
   chart.title = "Following error of this axis, RMS";
   chart.caption =
       "The same jogs, twice with each set of parameters; ±: difference between the two RMS values. Not repeatable: RMS "
-      "of "
-      "of the difference between equal runs, which no parameter can reduce. The base model has only inertia and "
-      "friction.";
+      "of the difference between equal runs, which no parameter can reduce. N/µm: least stiffness against a process "
+      "force. The base model has only inertia and friction.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
     if (!set["rms_um"].is_null())
-      chart.rows.push_back({set_title(page, set["name"]),
+      chart.rows.push_back({set_title(page, set),
                             {set["rms_um"].get<double>()},
-                            fmt::format("± {} µm{}", format_value(set["repeats_um"].get<double>(), 2),
-                                        set["name"] == page.errors["kept"] ? ", kept" : "")});
+                            fmt::format("± {} µm; {} N/µm{}", format_value(set["repeats_um"].get<double>(), 2),
+                                        format_value(1.0 / set["compliance_um_N"].get<double>()),
+                                        set["name"] == page.errors["kept"] ? ", kept"
+                                        : set["too_soft"]                  ? ", too soft"
+                                                                           : "")});
   chart.rows.push_back({"not repeatable", {page.not_repeatable()}, ""});
   return chart;
 }
@@ -166,7 +171,7 @@ ResidualEffort following_along(const Record& record, const sim::DataSheet& data)
   return samples;
 }
 
-void add_picture(Report& report, const Page& page, const std::vector<std::pair<const char*, const char*>>& runs) {
+void add_picture(Report& report, const Page& page, const std::vector<std::pair<std::string, std::string>>& runs) {
   const sim::DataSheet& data = page.session.options().sheet.data;
   const double period = ripple_period(read_model(page.session.folder().require("improved.toml", "improve")));
   std::vector<ResidualView> views;
@@ -205,10 +210,93 @@ Table steps_table(const Page& page) {
     // The explanation is at the top, or on the page of the diagnosis.
     if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
       said.erase(at, explanation.size());
+    // The reason stands with the plot.
+    if (step["name"] == "estimator" && page.state.value("estimator", nlohmann::json()).is_object())
+      said.erase(0, std::min(said.find(". "), said.size() - 2) + 2);
     if (step["name"] == "compensate" && page.is_new() && page.has_after()) said = "The figures are above.";
     table.rows.push_back({step["name"], said, files_in_words(step["files"].get<std::vector<std::string>>())});
   }
   return table;
+}
+
+ScatterPlot estimator_plot(const nlohmann::json& tests) {
+  ScatterPlot plot;
+  const bool has_force = tests["force_N"].is_number();
+  plot.title = "Deviation against noise of the command";
+  plot.caption =
+      "A point for each disturbance variance Rwd, which grows along the line. The deviation is the following error" +
+      (has_force ? fmt::format(" and the response to a force of {:g} N at the softest frequency.",
+                               tests["force_N"].get<double>())
+                 : std::string("; a process force is not known."));
+  plot.x = {"noise of the command", "mV"};
+  plot.y = {"deviation, RMS", "µm"};
+  plot.logarithmic_x = plot.logarithmic_y = true;
+  ScatterSeries tried{"tried", SeriesRole::measured, SeriesStyle::line_and_points, {}, {}, {}, {}},
+      chosen{"chosen", SeriesRole::after, SeriesStyle::points, {}, {}, {}, {}};
+  for (const auto& test : tests["tried"]) {
+    if (test["rms_um"].is_null()) continue;
+    const bool is_chosen = test["rwd_V2"] == tests["chosen_V2"];
+    for (ScatterSeries* series : {&tried, &chosen}) {
+      if (series == &chosen && !is_chosen) continue;
+      const double error_um = test["deviation_um"], half_um = test["repeats_um"].get<double>() / 2.0;
+      series->x.push_back(1e3 * test["command_noise_V"].get<double>());
+      series->y.push_back(error_um);
+      series->lower.push_back(error_um - half_um);
+      series->upper.push_back(error_um + half_um);
+    }
+  }
+  plot.series = {tried, chosen};
+  return plot;
+}
+
+Table estimator_table(const nlohmann::json& tests) {
+  Table table;
+  table.title = "Disturbance variances that were tried";
+  table.headings = {"Rwd, V²",        "estimator, Hz",       "loop, Hz",
+                    "modulus margin", "following error, µm", "stiffness, N/µm",
+                    "softest at, Hz", "noise, mV",           ""};
+  const auto shown = [](const nlohmann::json& figure, double factor) {
+    return figure.is_null() ? "–" : format_value(factor * figure.get<double>());
+  };
+  for (const auto& test : tests["tried"]) {
+    const bool is_run = !test["rms_um"].is_null(), is_designed = test["bandwidth_Hz"] != 0.0;
+    table.rows.push_back({fmt::format("{:g}", test["rwd_V2"].get<double>()),
+                          is_designed ? shown(test["observer_Hz"], 1.0) : "–",
+                          is_designed ? shown(test["bandwidth_Hz"], 1.0) : "–", shown(test["modulus"], 1.0),
+                          is_run ? fmt::format("{} ± {}", shown(test["rms_um"], 1.0),
+                                               format_value(test["repeats_um"].get<double>() / 2.0, 2))
+                                 : "–",
+                          is_designed ? format_value(1.0 / test["compliance_um_N"].get<double>()) : "–",
+                          shown(test["softest_at_Hz"], 1.0), shown(test["command_noise_V"], 1e3),
+                          test["rwd_V2"] == tests["chosen_V2"] ? "chosen"
+                          : is_run                             ? ""
+                          : is_designed                        ? "stopped by a fault"
+                                                               : "no margin"});
+  }
+  return table;
+}
+
+void add_estimator(Report& report, const Page& page) {
+  if (!page.state.value("estimator", nlohmann::json()).is_object()) return;
+  const nlohmann::json tests = page.session.folder().read_json("estimator.json");
+  report.section(
+      "How fast the estimator may be",
+      tests["why"].get<std::string>() +
+          ". A larger Rwd makes the estimate of the disturbance faster, so that process forces move the axis "
+          "less, and the command noisier (Erkorkmaz & Altintas 2001, p. 1503). Stiffness: least force on the "
+          "table per amplitude of the position, over the measured frequencies. At one margin, noise grows "
+          "about as stiffness does, so that the two alone favour no value. " +
+          (tests["force_N"].is_number()
+               ? "The given force decides: the calmest value with the least deviation under it. "
+               : "No process force was given (--force), so no value may make the axis softer than the first "
+                 "estimator does; of the others, the calmest one with the least following error. ") +
+          "These runs have the whole controller of the better model; estimator.json states why a value was "
+          "not run. " +
+          (page.state.value("estimator_kept", false)
+               ? "In the last comparison it gained: it is on the board."
+               : "In the last comparison it gained nothing, or made the axis softer: it is not on the board."));
+  report.add(estimator_plot(tests));
+  report.add(estimator_table(tests));
 }
 
 Table pages_table(const Page& page) {
@@ -238,9 +326,10 @@ CommissionStepResult write_page(CommissionSession& session) {
   report.verdict(verdict_of(page));
   report.section("Before and after, on the machine");
   report.add(errors_chart(page));
-  std::vector<std::pair<const char*, const char*>> runs{{"before.csv", "before"}};
-  if (page.has_after()) runs.emplace_back("after.csv", "after");
+  std::vector<std::pair<std::string, std::string>> runs{{"before.csv", "before"}};
+  if (page.has_after()) runs.emplace_back(page.last()["record"], "after");
   add_picture(report, page, runs);
+  add_estimator(report, page);
   report.section("How it was found");
   report.add(pages_table(page));
   report.add(steps_table(page));

@@ -186,24 +186,39 @@ class ResponseStep {
 
 CommissionStepResult measure_response(CommissionSession& session) { return ResponseStep(session).run(); }
 
-CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model) {
-  CommissionLoop first = session.first_loop(model);
+CommissionLoop measured_loop(CommissionSession& session, const sim::DriveDescription& model,
+                             const DesignOptions& options) {
   const CommissionFolder& folder = session.folder();
   const nlohmann::json raised = folder.document().value("raised", nlohmann::json());
-  if (!raised.is_object()) return first;
+  if (!raised.is_object()) return {design_axis(model, options), {}};
   const Computing computing(session);
   LoopAim aim;
   aim.modulus = session.options().modulus;
   if (const nlohmann::json& notch = raised.at("notch"); notch.is_object())
     aim.filters.notch = Notch{notch.at("f_Hz"), notch.at("damping"), notch.at("depth")};
+  LoopDesign loop = design_loop(model, options, aim, read_response(folder.require(kMeasured, "response")));
+  CommissionLoop made{std::move(loop.design), loop.filters};
+  if (loop.after.margins && loop.after.margins->modulus) made.modulus = loop.after.margins->modulus->value;
+  return made;
+}
+
+CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model,
+                           const DesignOptions& options) {
   try {
-    LoopDesign loop =
-        design_loop(model, session.first_options(), aim, read_response(folder.require(kMeasured, "response")));
-    return {std::move(loop.design), loop.filters};
+    return measured_loop(session, model, options);
   } catch (const Failure& failure) {
     if (failure.code != ExitCode::refused) throw;
-    return first;  // no bandwidth keeps the margin with this model
+    return session.first_loop(model);
   }
+}
+
+Compliance compliance_with(CommissionSession& session, const sim::DriveDescription& model,
+                           const firmware::AxisParameters<float>& controller) {
+  std::optional<AxisResponse> measured;
+  if (session.folder().has(kMeasured)) measured = read_response(session.folder().path(kMeasured));
+  const FinePlant drive =
+      measured && measured->fit ? fine_plant(measured->response, *measured->fit) : fine_plant(plant_of(model));
+  return largest_compliance(drive, AxisController(controller), rigid_axis(model), model.data.kind);
 }
 
 }  // namespace host

@@ -137,6 +137,17 @@ Record CommissionSession::record(const CommissionRun& run) {
   return keep(outcome, excitation.header, run.file);
 }
 
+std::optional<Record> CommissionSession::try_record(const CommissionRun& run, std::string& stopped_because) {
+  try {
+    return record(run);
+  } catch (const Failure& failure) {
+    if (talk_.stop() || failure.code != ExitCode::device_fault) throw;
+    stopped_because = failure.what();
+    recover();
+    return std::nullopt;
+  }
+}
+
 Record CommissionSession::record_plan(const RunPlan& run, const std::string& file) {
   const auto begin = board_.now();
   const firmware::ParameterValues values = board_.read_values();
@@ -180,6 +191,7 @@ void CommissionSession::plan_limits(const sim::DriveDescription& model) {
     throw Failure(ExitCode::refused, "friction needs all of the box's volts: none remain for acceleration");
   const ReferenceLimits usual = ReferenceLimits::usual_for(model.data.kind);
   const double acceleration = std::min(usual.acceleration, available);
+  folder_.put("feedback_V", available * made.axis.inertia / (model.data.lead * made.axis.effort_per_volt));
   folder_.put("limits", {{"velocity", std::min(usual.velocity, options_.box.speed / kRideMargin)},
                          {"acceleration", acceleration},
                          {"jerk", acceleration * usual.jerk / usual.acceleration}});
@@ -202,6 +214,19 @@ DesignOptions CommissionSession::first_options() const {
   wanted.bandwidth_Hz = std::ldexp(options_.bandwidth_Hz, -halvings);
   wanted.disturbance_variance = std::ldexp(wanted.disturbance_variance, -4 * halvings);
   return wanted;
+}
+
+DesignOptions CommissionSession::tuned_options() const {
+  DesignOptions wanted = first_options();
+  const nlohmann::json estimator = folder_.document().value("estimator", nlohmann::json());
+  if (!estimator.is_object()) return wanted;
+  wanted.disturbance_variance = estimator.at("rwd_V2");
+  if (estimator.at("rw").is_number()) wanted.tach_variance = estimator.at("rw").get<double>();
+  return wanted;
+}
+
+DesignOptions CommissionSession::kept_options() const {
+  return folder_.document().value("estimator_kept", false) ? tuned_options() : first_options();
 }
 
 CommissionLoop CommissionSession::first_loop(const sim::DriveDescription& model) const {

@@ -37,8 +37,10 @@ struct CommissionOptions {
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, because delays are not known yet
   double modulus = 0.5;        ///< modulus margin to keep when the bandwidth is raised on the measured response
   std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
-  std::optional<double> overtravel = {};        ///< free beyond the box up to the hard stops, mm (m); empty: unknown
-  bool save = false;                            ///< save the better parameters in the board's flash
+  /// Amplitude of the process force on the table that the axis has to bear, N; empty: unknown.
+  std::optional<double> force_N = {};
+  std::optional<double> overtravel = {};  ///< free beyond the box up to the hard stops, mm (m); empty: unknown
+  bool save = false;                      ///< save the better parameters in the board's flash
 };
 
 /// Dialogue with the user.
@@ -63,6 +65,7 @@ struct CommissionRun {
 struct CommissionLoop {
   AxisDesign design;
   ControlFilterChoice filters;
+  std::optional<double> modulus = {};  ///< margin on the measured response
 };
 
 /// Result of the diagnosis for the following steps of the same command.
@@ -90,6 +93,9 @@ class CommissionSession {
   /// end by itself.
   Record record(const CommissionRun& run);
 
+  /// The same; empty, with the reason, if the axis stopped with a fault, which is then cleared.
+  std::optional<Record> try_record(const CommissionRun& run, std::string& stopped_because);
+
   /// The same for a planned run.
   Record record_plan(const RunPlan& run, const std::string& file);
 
@@ -107,6 +113,10 @@ class CommissionSession {
   /// A controller of modest bandwidth, because delays and resonances are not known yet.
   CommissionLoop first_loop(const sim::DriveDescription& model) const;
   DesignOptions first_options() const;
+  /// The first options with the estimator that was chosen on the machine, if one was.
+  DesignOptions tuned_options() const;
+  /// The tuned options if the last comparison kept them; otherwise the first options.
+  DesignOptions kept_options() const;
   /// Plans limits of motion from `model` and the box and stores them in the folder. They are equal for all sets of
   /// parameters, so that the motions are the same. Throws Failure(refused) if friction needs all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);
@@ -137,6 +147,8 @@ class CommissionSession {
   /// Counts the time since `begin` as motion.
   void spend(std::chrono::steady_clock::time_point begin);
   ReferenceLimits limits() const;
+  /// Volts that the planned limits leave for the feedback.
+  double feedback_V() const { return folder_.document().at("feedback_V"); }
   /// Highest speeds of motions in this box, mm/s (m/s): held for a second; reached briefly.
   double steady_speed() const;
   double top_speed() const;

@@ -6,6 +6,7 @@
 
 #include "host/commission/session.hpp"
 #include "host/record/measurements.hpp"
+#include "host/response/compliance.hpp"
 
 namespace host {
 
@@ -43,8 +44,18 @@ bool level_static_friction(sim::DriveDescription& model, double forward_V, doubl
 /// if the measured response allows one and the machine confirms it.
 CommissionStepResult measure_response(CommissionSession& session);
 
-/// The controller that the measured response allows for `model`; the first one if none was allowed or measured.
-CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model);
+/// The controller with `options` for `model`: if a faster loop was confirmed, as fast as the measured response allows,
+/// with that loop's notch. Throws Failure(refused) if no bandwidth keeps the margin.
+CommissionLoop measured_loop(CommissionSession& session, const sim::DriveDescription& model,
+                             const DesignOptions& options);
+
+/// The same; the first controller if no bandwidth keeps the margin.
+CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model,
+                           const DesignOptions& options);
+
+/// Compliance of the axis with a controller, from the measured response; without one, from `model`.
+Compliance compliance_with(CommissionSession& session, const sim::DriveDescription& model,
+                           const firmware::AxisParameters<float>& controller);
 
 /// Makes the other training records (kTrainingFiles) and the validation records (kJudgingFiles).
 CommissionStepResult record_validation(CommissionSession& session);
@@ -62,7 +73,15 @@ CommissionStepResult separate(CommissionSession& session);
 /// Makes improved.toml, improvement.json, improvement.html.
 CommissionStepResult improve_model(CommissionSession& session);
 
-/// Makes old-params.toml, new-params.toml, before.csv, after.csv, errors.json; leaves the better set on the board.
+/// Makes estimator-N-params.toml, estimator-N.csv, estimator-N-again.csv, estimator.json: a disturbance variance, and
+/// the tachometer's measured one, for compensate() to compare. Makes nothing if the box's time would not suffice.
+CommissionStepResult tune_estimator(CommissionSession& session);
+
+/// Makes the same jogs with at most five sets of parameters, twice each: before (old-params.toml), loop (base model
+/// with tuned bandwidth and estimator), untuned (improved model, first estimator), after (all of it, new-params.toml),
+/// first-loop (improved model, first loop, only if no other set with that model gains). Makes NAME.csv, NAME-again.csv
+/// and errors.json; leaves the best set on the board. The first set stays unless another is better by more than equal
+/// runs differ.
 CommissionStepResult compensate(CommissionSession& session);
 
 /// Makes page.html.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/identify/encoder_step.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
@@ -85,6 +86,23 @@ std::optional<double> standstill_variance(const std::vector<Record>& records, co
   }
   if (stretches < kFewest) return std::nullopt;
   return squares / degrees;
+}
+
+std::optional<double> moving_variance(const Record& record, std::size_t begin, std::size_t count,
+                                      const sim::DriveDescription& model) {
+  if (count < 3 || !record.has_speed() || record.u_V.empty()) return std::nullopt;
+  const sim::Drive drive(model);
+  sim::DriveState state = drive.at(0.0, 0.0);
+  const double period_s = record.sample_period_s;
+  double before = 0.0, squares = 0.0;
+  for (std::size_t k = begin; k + 1 < begin + count; ++k) {
+    const double caused =
+        drive.tach_gain * drive.deliver_over(state, record.u_V[k], period_s) / drive.inertia * period_s;
+    const double unexplained = record.w[k + 1] - record.w[k] - caused;
+    if (k > begin) squares += std::pow(unexplained - before, 2);
+    before = unexplained;
+  }
+  return squares / 6.0 / static_cast<double>(count - 2);
 }
 
 }  // namespace host

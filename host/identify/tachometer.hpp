@@ -28,4 +28,11 @@ void apply_calibration(const TachometerCalibration& calibration, std::vector<Rec
 /// step, each about its own mean. Empty if there are fewer than three such intervals or a sensor is missing.
 std::optional<double> standstill_variance(const std::vector<Record>& records, const sim::DataSheet& data);
 
+/// Variance of the tachometer over `count` rows in motion, from second differences of the speed (1 + 4 + 1 = 6), which
+/// slow motion hardly affects. The motion that the command causes within a period is subtracted by `model`: feedback
+/// returns the tachometer's noise as such motion, correlated with the noise itself. Empty for fewer than three rows, or
+/// without a command or a speed.
+std::optional<double> moving_variance(const Record& record, std::size_t begin, std::size_t count,
+                                      const sim::DriveDescription& model);
+
 }  // namespace host

@@ -167,6 +167,18 @@ TEST(MachineDesign, EstimatorsHaveEqualPoles) {
   }
 }
 
+/// Catches an estimator that is faster than one of the axes was found to bear.
+TEST(MachineDesign, TheCalmestEstimatorSetsThePace) {
+  Tasks tasks = machine();
+  tasks[0].disturbance_variance = 0.1;
+  tasks[1].disturbance_variance = 1e-3;
+  const host::MachineDesign design = designed(tasks, true);
+  const auto slowest_Hz = [](const host::AxisLoop& loop) { return loop.design.observer_fn_Hz.front(); };
+  EXPECT_NEAR(slowest_Hz(design.matched.axes[0]), slowest_Hz(design.matched.axes[1]), 0.5);
+  EXPECT_NEAR(slowest_Hz(design.matched.axes[1]), slowest_Hz(design.own.axes[1]), 0.5);
+  EXPECT_GT(slowest_Hz(design.own.axes[0]), 1.5 * slowest_Hz(design.own.axes[1]));
+}
+
 /// A linear motor and a screw drive: lengths in m and mm, one of them without a tachometer.
 TEST(MachineDesign, ServesAxesOfDifferentKinds) {
   sim::DriveDescription linear;

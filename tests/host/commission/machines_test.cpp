@@ -24,7 +24,10 @@ struct Outcome {
   std::string page;
   std::vector<double> prediction_errors;  ///< before and after, as the steps compare and improve state them
   double before() const { return errors["sets"].front()["rms_um"]; }
-  double after() const { return errors["sets"].back()["rms_um"]; }
+  double after() const { return kept()["rms_um"]; }
+  const json& kept() const {
+    return *std::ranges::find_if(errors["sets"], [&](const json& set) { return set["name"] == errors["kept"]; });
+  }
   std::vector<std::string> effects() const { return state["verdict"]["effects"]; }
 };
 
@@ -61,6 +64,26 @@ std::vector<std::string> sentences_of(std::string page) {
   return sentences;
 }
 
+/// Catches a set of parameters that stays although every run with another is better by more than equal runs differ.
+void expect_none_better(const Outcome& found) {
+  const double kept_um = found.after(), kept_spread_um = found.kept()["repeats_um"];
+  for (const json& set : found.errors["sets"]) {
+    std::printf("%s: %s +- %s um%s\n", set["what"].get<std::string>().c_str(), set["rms_um"].dump().c_str(),
+                set["repeats_um"].dump().c_str(), set == found.kept() ? ", kept" : "");
+    if (set["rms_um"].is_null()) continue;
+    const double spread_um = set["repeats_um"];
+    EXPECT_LE(kept_um - kept_spread_um / 2.0 - set["rms_um"].get<double>() - spread_um / 2.0,
+              std::max(kept_spread_um, spread_um))
+        << set["what"];
+  }
+}
+
+std::vector<std::string> names(const Outcome& found) {
+  std::vector<std::string> names;
+  for (const json& set : found.errors["sets"]) names.push_back(set["name"]);
+  return names;
+}
+
 /// Catches positions that are not counted from home, which makes the compensation ineffective, and a loop with more
 /// bandwidth than the machine allows.
 TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
@@ -71,6 +94,8 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_THAT(found.effects(), testing::ElementsAre("cogging"));
   EXPECT_EQ(found.state["kept"], "new");
   EXPECT_LT(found.after(), 0.8 * found.before());
+  EXPECT_THAT(names(found), testing::IsSupersetOf({"before", "loop", "untuned", "after"}));
+  expect_none_better(found);
   EXPECT_TRUE(found.state["raised"].is_object());
   EXPECT_GT(found.state["raised"]["margins"]["measured"]["modulus"]["value"].get<double>(), 0.45);
   EXPECT_LT(found.state["motion_s"].get<double>(), 360.0);
@@ -84,13 +109,17 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_EQ(twice, sentences.end()) << (twice == sentences.end() ? "" : *twice);
 }
 
-/// Catches effects that are found although there are none.
+/// Catches effects that are found although there are none, and an estimator that stays although it gains nothing.
 TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   OwnBoard board;
   const Outcome found = commissioned(board, own_options());
   EXPECT_THAT(found.state["verdict"]["status"].get<std::string>(), testing::AnyOf("adequate", "parameters"));
   EXPECT_THAT(found.effects(), testing::IsEmpty());
+  EXPECT_THAT(names(found), testing::IsSupersetOf({"before", "loop", "untuned", "after"}));
+  expect_none_better(found);
+  const bool is_tuned = found.errors["kept"] == "loop" || found.errors["kept"] == "after";
+  EXPECT_EQ(found.state["estimator_kept"], is_tuned);
 }
 
 /// Catches a weight that is identified as friction, and a position-dependent compensation that is offered without

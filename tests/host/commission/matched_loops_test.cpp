@@ -9,6 +9,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/model/model_file.hpp"
+#include "host/simulated_board/simulated_link.hpp"
 #include "host/simulated_board/usual_wiring.hpp"
 #include "tests/host/axes/unlike_axes.hpp"
 #include "tests/host/skip_where_instrumented.hpp"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -20,25 +21,33 @@ class OwnMachine : public sim::ForeignMotion {
   bool counts_backward = false;
   double cogging_Nm = 0.0;  ///< amplitude, with a period of 4 mm
   double weight_Nm = 0.0;
-  double seizes_at_s = HUGE_VAL;  ///< machine time at which its bearing seizes
+  /// Process force against the axis by machine time, N at the table. Only the moving axis feels it: its screw is
+  /// self-locking.
+  std::function<double(double t_s)> process_N;
+  double tachometer_deviation = 0.1;  ///< deviation of the speed's noise in motion, rad/s
+  double seizes_at_s = HUGE_VAL;      ///< machine time at which its bearing seizes
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
     constexpr int kSteps = 20;
-    lived_s_ += duration_s;
-    for (int step = 0; step < kSteps; ++step) move(duration_s / kSteps);
+    for (int step = 0; step < kSteps; ++step) {
+      lived_s_ += duration_s / kSteps;
+      move(duration_s / kSteps);
+    }
   }
   sim::ForeignReading reading() const override {
     return {counts_backward ? -x_ : x_, noisy_ + (counts_backward ? -w_ : w_)};
   }
 
   double position() const { return x_; }
+  void seed(std::uint32_t seed) { random_.seed(seed); }  ///< of the speed's noise
 
  private:
   void move(double dt) {
     constexpr double kEffort = 3.0, kInertia = 0.008, kFriction = 2.0, kLead = 1.6;
     const double magnets = cogging_Nm * std::sin(2.0 * std::numbers::pi * x_ / 4.0);
-    const double drive = kEffort * u_V_.value_or(0.0) + magnets - weight_Nm;
+    const double process_Nm = process_N && w_ != 0.0 ? 1e-3 * kLead * process_N(lived_s_) : 0.0;
+    const double drive = kEffort * u_V_.value_or(0.0) + magnets - weight_Nm - process_Nm;
     const bool is_seized = lived_s_ > seizes_at_s;
     if (is_seized) w_ = 0.0;
     if (is_seized || (w_ == 0.0 && std::abs(drive) <= kFriction)) return;
@@ -46,7 +55,7 @@ class OwnMachine : public sim::ForeignMotion {
     const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
     x_ += kLead * dt * (w_ + w) / 2.0;
     w_ = w_ * w < 0.0 ? 0.0 : w;
-    noisy_ = 0.1 * normal_(random_);
+    noisy_ = tachometer_deviation * normal_(random_);
   }
 
   std::optional<double> u_V_;

@@ -1,0 +1,161 @@
+// Tries five disturbance variances of the estimator on the machine (Erkorkmaz & Altintas 2001, p. 1503).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "host/commission/estimator_choice.hpp"
+#include "host/commission/following.hpp"
+#include "host/commission/steps.hpp"
+#include "host/exit_codes.hpp"
+#include "host/identify/tachometer.hpp"
+#include "host/model/model_file.hpp"
+#include "host/parameters/axis_parameters.hpp"
+#include "host/record/drive_units.hpp"
+#include "host/record/read_record.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr std::array kFactors = {0.01, 0.1, 1.0, 10.0, 100.0};  // of the first controller's Rwd
+constexpr double kRuns = 2.0 * static_cast<double>(kFactors.size());
+constexpr const char* kFile = "estimator.json";
+
+/// Variance of the tachometer, (rad/s)^2 ((m/s)^2). It changes between measurements, so that the larger is designed for
+/// (p. 1503).
+struct TachometerNoise {
+  std::optional<double> at_rest;  ///< eq. (46); empty if no record shows a rest
+  double moving = 0.0;
+  double used() const { return std::max(at_rest.value_or(0.0), moving); }
+};
+
+class EstimatorStep {
+ public:
+  explicit EstimatorStep(CommissionSession& session)
+      : session_(session),
+        folder_(session.folder()),
+        model_(read_model(folder_.require("improved.toml", "improve"))),
+        options_(session.first_options()) {}
+
+  CommissionStepResult run() {
+    folder_.put("estimator", nullptr);
+    const std::optional<TachometerNoise> noise = tachometer_noise();
+    if (noise && noise->used() > 0.0) options_.tach_variance = noise->used();
+    const double needed_s = kRuns * jogs("").time_s + kLeft * judging_jogs(session_, "").time_s,
+                 left_s = session_.options().box.time_s - session_.motion_s();
+    if (needed_s > left_s)
+      return {{},
+              fmt::format("Not tried: these tests and the last comparison need {:.0f} s of motion, and the box's time "
+                          "leaves {:.0f} s. A longer --box time=… allows them.",
+                          needed_s, left_s)};
+    session_.ask("Estimator: the same two jogs with five variances of the disturbance, twice each.");
+    for (const double factor : kFactors) tests_.push_back(test(factor * options_.disturbance_variance));
+    session_.disable();
+    const EstimatorDemand demand{compliance_of(raised_loop(session_, model_, session_.first_options())),
+                                 session_.options().force_N, session_.feedback_V() / kDeviations};
+    const EstimatorChoice choice = choose_estimator(tests_, demand);
+    nlohmann::json document = tracking_json(tests_, demand, choice);
+    if (noise)
+      document["tachometer_variance"] = {
+          {"at_rest", noise->at_rest ? nlohmann::json(*noise->at_rest) : nlohmann::json()},
+          {"moving", noise->moving},
+          {"used", noise->used()}};
+    folder_.write_json(kFile, document);
+    files_.emplace_back(kFile);
+    if (choice.value)
+      folder_.put("estimator",
+                  {{"rwd_V2", tests_[*choice.value].disturbance_variance},
+                   {"rw", options_.tach_variance ? nlohmann::json(*options_.tach_variance) : nlohmann::json()}});
+    return {files_, choice.why + "." + (noise ? sentence(*noise) : "")};
+  }
+
+ private:
+  static constexpr double kLeft = 12.0;  // jogs of the last comparison: five sets twice, and a reserve of two
+
+  /// Of the noise that must not take the command into saturation, for which the linear design does not hold (p. 1490):
+  /// 99.7 % of a normal distribution.
+  static constexpr double kDeviations = 3.0;
+
+  Compliance compliance_of(const CommissionLoop& loop) const {
+    return compliance_with(session_, model_, designed_parameters(model_, loop.design, loop.filters));
+  }
+
+  /// Both directions slowly, where friction changes most, and fast.
+  CommissionRun jogs(const std::string& file) const {
+    constexpr double kHold_s = 0.5;
+    const double top = session_.top_speed();
+    const std::vector<double> speeds = {0.02 * top, 0.3 * top};
+    return {file, "ladder", {speeds, {{"hold", kHold_s}}}, "", 2.5 * kHold_s * static_cast<double>(speeds.size())};
+  }
+
+  std::optional<TachometerNoise> tachometer_noise() const {
+    if (!model_.data.tach_noise_variance) return std::nullopt;
+    std::vector<Record> resting;
+    for (const char* file : {"steps.csv", "dwell.csv"})
+      if (folder_.has(file)) resting.push_back(read_record(folder_.path(file)));
+    const Record jog = read_record(folder_.require("ladder-fast.csv", "ladder"));
+    const MovingRows rows = moving_rows(jog);
+    const auto moving = moving_variance(jog, rows.begin, rows.end - rows.begin, model_);
+    if (!moving) return std::nullopt;
+    return TachometerNoise{standstill_variance(resting, model_.data), *moving};
+  }
+
+  std::string sentence(const TachometerNoise& noise) const {
+    const char* speed = units_of(model_.data.kind).speed;
+    return fmt::format(" The tachometer's variance is {:.2g} ({})² in motion{}; the larger is used.", noise.moving,
+                       speed, noise.at_rest ? fmt::format(" and {:.2g} at rest", *noise.at_rest) : "");
+  }
+
+  TrackingTest test(double disturbance_variance) {
+    TrackingTest test;
+    test.disturbance_variance = disturbance_variance;
+    DesignOptions options = options_;
+    options.disturbance_variance = disturbance_variance;
+    try {
+      const CommissionLoop loop = measured_loop(session_, model_, options);
+      test.bandwidth_Hz = loop.design.used.bandwidth_Hz;
+      test.observer_Hz = loop.design.observer_fn_Hz.front();
+      test.modulus = loop.modulus;
+      test.compliance = compliance_of(loop);
+      test.force = force_estimate(loop.design, model_.data);
+      make_runs(test, loop);
+    } catch (const Failure& failure) {
+      if (failure.code != ExitCode::refused || session_.talk().stop()) throw;
+      test.unusable_because = failure.what();
+    }
+    return test;
+  }
+
+  /// With the whole controller, because feed-forward changes the disturbance that remains for the estimate.
+  void make_runs(TrackingTest& test, const CommissionLoop& loop) {
+    const std::string name = fmt::format("estimator-{}", tests_.size() + 1);
+    files_.push_back(name + "-params.toml");
+    session_.download(session_.design(model_, loop, files_.back()));
+    std::vector<Record> runs;
+    std::vector<double> errors;
+    for (const char* which : {"", "-again"}) {
+      std::optional<Record> run = session_.try_record(jogs(name + which + ".csv"), test.unusable_because);
+      if (folder_.has(name + which + ".csv")) files_.push_back(name + which + ".csv");
+      if (!run) return;
+      errors.push_back(following_error(*run, model_.data).rms_um);
+      runs.push_back(std::move(*run));
+    }
+    test.error_um = (errors[0] + errors[1]) / 2.0;
+    test.repeats_um = std::abs(errors[0] - errors[1]);
+    test.noise_V = command_noise_V(runs[0], runs[1]);
+  }
+
+  CommissionSession& session_;
+  CommissionFolder& folder_;
+  sim::DriveDescription model_;
+  DesignOptions options_;  ///< with the tachometer's own variance
+  std::vector<TrackingTest> tests_;
+  std::vector<std::string> files_;
+};
+
+}  // namespace
+
+CommissionStepResult tune_estimator(CommissionSession& session) { return EstimatorStep(session).run(); }
+
+}  // namespace host
