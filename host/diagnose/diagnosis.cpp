@@ -212,11 +212,10 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   // machine is limited by model error and so cannot decide.
   const auto by_effort = [&](bool rough) -> std::optional<Diagnosis> {
     if (!split.moves_enough || (!has_linear_form(model) && !rough)) return {};
-    const std::shared_ptr<const EffortScreen>& seen = balance;
-    if (!seen->empty()) screen = seen;
-    if (seen->chosen.empty() && !effort_decides(*seen, split.validation)) return {};
-    if (!seen->chosen.empty() && time_beside(seen->best().model)) prepare();
-    Diagnosis diagnosis = diagnosis_of(model, split, seen);
+    if (!balance->empty()) screen = balance;
+    if (balance->chosen.empty() && !effort_decides(*balance, split.validation)) return {};
+    if (!balance->chosen.empty() && time_beside(balance->best().model)) prepare();
+    Diagnosis diagnosis = diagnosis_of(model, split, balance);
     diagnosis.log = measured.log();
     diagnosis.rows = rows;
     if (progress) progress(1.0);
