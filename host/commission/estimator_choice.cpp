@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/commission/following.hpp"
+#include "host/response/loop_design.hpp"
 
 namespace host {
 
@@ -47,8 +48,8 @@ double deviation_um(double error_um, const Compliance& compliance, std::optional
 }
 
 bool is_softer(const Compliance& one, const Compliance& other) {
-  constexpr double kStep = 1.04 * 1.04;  // compliance falls at most with the square of the bandwidth
-  return one.um_per_N > kStep * other.um_per_N;
+  // Compliance falls at most with the square of the bandwidth.
+  return one.um_per_N > kBandwidthStep * kBandwidthStep * other.um_per_N;
 }
 
 EstimatorChoice choose_estimator(const std::vector<TrackingTest>& tests, const EstimatorDemand& demand) {

@@ -26,8 +26,7 @@ ForceEstimate force_estimate(const AxisDesign& design, const sim::DataSheet& dat
     power = (power * power).eval();
   }
   ForceEstimate found;
-  const double metres = data.kind == sim::DriveKind::linear ? 1.0 : 1e-3;
-  found.newton_per_V = design.axis.effort_per_volt / (design.axis.lead * metres);
+  found.newton_per_V = newton_per_volt(design.axis, data.kind);
   found.band_N = kNormal95 * std::sqrt(sum(2, 2)) * found.newton_per_V;
   // For a disturbance that grows by 1 V a sample, the error in volts is the delay in samples.
   const Eigen::Vector3d behind = (Eigen::Matrix3d::Identity() - memory).lu().solve(rest * design.model.W.col(1));

@@ -7,6 +7,11 @@
 
 namespace host {
 
+double newton_per_volt(const RigidAxis& axis, sim::DriveKind kind) {
+  const double metres = kind == sim::DriveKind::linear ? 1.0 : 1e-3;
+  return axis.effort_per_volt / (axis.lead * metres);
+}
+
 RigidAxis rigid_axis(const sim::DriveDescription& model) {
   const sim::EffectEntry* inertia = model.find("inertia");
   if (inertia == nullptr || !inertia->has("J") || !(inertia->at("J") > 0.0)) {

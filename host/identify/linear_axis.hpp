@@ -18,6 +18,9 @@ struct RigidAxis {
   double pole() const { return -viscous / inertia; }         ///< pw of eq. (3), 1/s
 };
 
+/// Force on the table for a volt of the command, N/V.
+double newton_per_volt(const RigidAxis& axis, sim::DriveKind kind);
+
 /// Takes J and B from the model's `inertia` and `viscous` effects. Throws Failure(bad_input) if the inertia is absent
 /// or not positive, or if the drive has no torque or force constant. A model without `viscous` has B = 0.
 RigidAxis rigid_axis(const sim::DriveDescription& model);

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kLowest_Hz = 3.0;
 constexpr double kHighestShare = 0.12;  ///< of the control rate: highest bandwidth for pole placement on a rigid drive
-constexpr double kStep = 1.04;
 /// Frequencies relative to the resonance at which a notch is tried: farther from the crossover it costs less phase.
 constexpr std::array kPlaces = {0.9, 1.0, 1.12};
 constexpr std::array kDampings = {0.15, 0.3, 0.6};
@@ -49,7 +48,7 @@ HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim
                               const ControlFilterChoice& filters) {
   HighestLoop found;
   const double period_s = drives.front().model.data.sample_period_s;
-  for (double f = kLowest_Hz; f < kHighestShare / period_s; f *= kStep) {
+  for (double f = kLowest_Hz; f < kHighestShare / period_s; f *= kBandwidthStep) {
     double modulus = HUGE_VAL;
     std::vector<std::size_t> stopped_by;
     for (std::size_t i = 0; i < drives.size(); ++i)

@@ -38,6 +38,9 @@ struct HighestLoop {
   std::vector<std::size_t> stopped_by{};  ///< every drive that fails at the next bandwidth, in ascending order
 };
 
+/// Ratio of neighbouring bandwidths that highest_bandwidth() tries.
+inline constexpr double kBandwidthStep = 1.04;
+
 /// The highest bandwidth at which all drives meet the requirements with these filters.
 HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
                               const ControlFilterChoice& filters);
