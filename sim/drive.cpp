@@ -44,7 +44,7 @@ void Drive::settle() {
                     !friction_after_reversal.empty() || transmitted_share != 0.0 || friction_memory_s > 0.0 ||
                     dwell_gain > 0.0;
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
-          load_effort.empty();
+          load_effort.empty() && effort_behind_screw.empty();
   straight_command_ = command.empty() && effort_limit.empty();
   remembers_ = current_lag_s > 0.0 || tach_lag_s > 0.0 || friction_memory_s > 0.0 || !friction_after_reversal.empty();
   // The mean of a sine over an eighth of its period is within 2.5 % of its middle value.
@@ -76,6 +76,13 @@ DriveState Drive::at(double x, double w) const {
   state.w = state.load_w = state.tach = w;
   state.friction_speed = std::abs(w);
   return state;
+}
+
+double Drive::with_effort_behind_screw(double effort, double w, double t_s) const {
+  double outer = 0.0;
+  for (const auto& part : effort_behind_screw) outer += part(t_s);
+  if (w != 0.0) return effort + outer;
+  return effort > 0.0 ? std::clamp(effort + outer, 0.0, effort) : std::clamp(effort + outer, effort, 0.0);
 }
 
 inline double Drive::command_effort(double u_V, double w) const {
@@ -123,10 +130,11 @@ template <Drive::Mechanics kMechanics, typename Contact>
                                                double duration_s) const {
   const double middle_x = motion.x + 0.5 * duration_s * lead * motion.w;
   const double motor = effort * product(effort_factor, middle_x);
-  double net = motor;
-  for (const auto& load : load_effort) net += load(t_s, middle_x);
+  const double w_before = motion.w;
   Contact contact(*this, motion, t_s, middle_x, motor);
-  move_masses<kMechanics>(motion, net, duration_s, 1, contact);
+  move_masses<kMechanics>(motion, with_loads(motor, w_before, t_s, middle_x), duration_s, 1, contact);
+  // A force behind the screw stops the axis, and does not drive it back.
+  if (!effort_behind_screw.empty() && w_before * motion.w < 0.0) motion.w = 0.0;
 }
 
 template <Drive::Mechanics kMechanics, typename Contact>
@@ -253,7 +261,7 @@ double Drive::deliver_over(DriveState& state, double u_V, double duration_s) con
 
 bool Drive::shapes_effort() const {
   return !command.empty() || delay_s > 0.0 || current_lag_s > 0.0 || !effort_limit.empty() || !effort_factor.empty() ||
-         !load_effort.empty();
+         !load_effort.empty() || !effort_behind_screw.empty();
 }
 
 double Drive::sliding_effort(DriveState& state, double effort, double t_s) const {
@@ -283,8 +291,7 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
   const double middle_x = 0.5 * (state.x + x1);
   const double mean_w = 0.5 * (w0 + w1);
   const double motor = deliver_over(state, u_V, duration_s) * product(effort_factor, middle_x);
-  double effort = motor;
-  for (const auto& load : load_effort) effort += load(t_s, middle_x);
+  const double effort = with_loads(motor, mean_w, t_s, middle_x);
   if (friction_memory_s > 0.0) lag_mean(state.friction_speed, std::abs(mean_w), friction_memory_s, duration_s);
   if (dwell_gain > 0.0 || bristles) {
     const RichContact contact(*this, state, t_s, middle_x, motor);

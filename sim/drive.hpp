@@ -119,6 +119,12 @@ class Drive {
     return tach_gain * motion.tach * (tach_ripple.empty() ? 1.0 : tach_ripple_at(motion.x)) + tach_offset;
   }
 
+  /// The motor's effort with the efforts of all loads, at this speed, Nm or N.
+  double with_loads(double motor, double w, double t_s, double x) const {
+    for (const auto& load : load_effort) motor += load(t_s, x);
+    return effort_behind_screw.empty() ? motor : with_effort_behind_screw(motor, w, t_s);
+  }
+
   /// Mean torque or force of the motor over an interval with `u_V` held, Nm or N; advances the states of the command
   /// path (dead time, current loop).
   double deliver_over(DriveState& state, double u_V, double duration_s) const;
@@ -141,8 +147,11 @@ class Drive {
   double delay_s = 0.0;
   double current_lag_s = 0.0;  ///< time constant of the current loop
   std::vector<std::function<double(double effort, double w)>> effort_limit;
-  std::vector<std::function<double(double x)>> effort_factor;             ///< torque constant along the travel
-  std::vector<std::function<double(double t_s, double x)>> load_effort;   ///< added to the motor's effort
+  std::vector<std::function<double(double x)>> effort_factor;            ///< torque constant along the travel
+  std::vector<std::function<double(double t_s, double x)>> load_effort;  ///< added to the motor's effort
+  /// Effort on the table behind a self-locking screw: added while the axis moves. At rest it only takes from the
+  /// motor's effort (paper, p. 1494).
+  std::vector<std::function<double(double t_s)>> effort_behind_screw;
   std::vector<std::function<double(double t_s, double x)>> level_factor;  ///< on Coulomb and static friction
   std::vector<std::function<double(double t_s)>> viscous_factor;
   /// Further friction of a direction (0 forward, 1 backward) at speed >= 0.
@@ -173,6 +182,7 @@ class Drive {
   enum class Mechanics { one_mass, two_masses, bristles };
 
   void settle();
+  double with_effort_behind_screw(double effort, double w, double t_s) const;
   double tach_ripple_at(double x) const;
   double command_effort(double u_V, double w) const;
   double deliver(DriveMotion& motion, double u_V, double w, double duration_s) const;

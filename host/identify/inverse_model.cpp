@@ -47,7 +47,7 @@ std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion
       const double friction = friction_magnitude(drive, motion.t_s[k], motion.travel[k], speed, motion.effort[k]);
       sum += speed > 0.0 ? friction : -friction;
     }
-    for (const auto& load : drive.load_effort) sum -= load(motion.t_s[k], motion.travel[k]);
+    sum -= drive.with_loads(0.0, speed, motion.t_s[k], motion.travel[k]);
     effort[k] = sum;
   }
   return effort;

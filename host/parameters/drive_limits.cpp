@@ -52,8 +52,7 @@ class EffortBalance {
     least_load_ = kInfinite;
     most_load_ = -kInfinite;
     for (int place = 0; place < kPlaces; ++place) {
-      double sum = 0.0;
-      for (const auto& load : loaded.load_effort) sum += load(0.0, longest * place / kPlaces);
+      const double sum = loaded.with_loads(0.0, 0.0, 0.0, longest * place / kPlaces);
       least_load_ = std::min(least_load_, sum);
       most_load_ = std::max(most_load_, sum);
     }

@@ -12,9 +12,13 @@ void install_external_torque(const EffectEntry& entry, const DataSheet& data, Dr
   const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
   // The torque is weighted by the part of the sample in which it acts: a fit can move the edges by less than a sample.
   const double period_s = data.sample_period_s;
-  drive.load_effort.push_back([=](double t_s, double) {
+  const auto acting = [=](double t_s) {
     return torque * std::max(0.0, std::min(t_s + period_s, end) - std::max(t_s, start)) / period_s;
-  });
+  };
+  if (data.kind == DriveKind::linear)
+    drive.load_effort.push_back([=](double t_s, double) { return acting(t_s); });
+  else
+    drive.effort_behind_screw.emplace_back(acting);
 }
 
 }  // namespace
@@ -23,7 +27,10 @@ extern const EffectInfo external_torque;
 const EffectInfo external_torque{
     .kind = "external_torque",
     .title = "Temporary external torque",
-    .equation = "T = T_motor + T_e for t_0 <= t < t_0 + d; t: time on the clock of the record",
+    .equation =
+        "T = T_motor + T_e for t_0 <= t < t_0 + d; t: time on the clock of the record. A rotary drive has a "
+        "self-locking "
+        "screw: at rest T_e only takes from T_motor",
     .stage = Stage::load,
     .parameters = {{.id = "torque",
                     .rotary_key = "torque_Nm",

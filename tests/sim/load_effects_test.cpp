@@ -169,13 +169,43 @@ TEST(ExternalTorque, ActsInItsStretchOfTimeOnly) {
     for (const double duration_s : {0.05, 0.0126, 0.0004}) {
       const Drive drive(
           with(free_mass(), "external_torque", {{"torque", 0.5}, {"start", start_s}, {"duration", duration_s}}));
-      DriveState state = drive.at(0.0, 0.0);
+      constexpr double kSpeed = 1.0;
+      DriveState state = drive.at(0.0, kSpeed);
       for (int k = 0; k < 300; ++k) {
         drive.step(state, 0.0, 0.001 * k, 0.001);
         const double acting_s = std::clamp(0.001 * (k + 1) - start_s, 0.0, duration_s);
-        ASSERT_NEAR(state.w, 0.5 / kInertia * acting_s, 1e-9) << k;
+        ASSERT_NEAR(state.w, kSpeed + 0.5 / kInertia * acting_s, 1e-9) << k;
       }
     }
+}
+
+/// Catches a force that drives an axis at rest through its screw, or helps its motor to break it away; one that a motor
+/// at rest does not have to overcome; one that a linear drive does not feel; one that drives a stopped axis back.
+TEST(ExternalTorque, IsFeltInMotionOnlyBehindAScrew) {
+  constexpr double kLarge = 3.0 * kCoulomb;
+  const auto pushed = [&](double torque) {
+    return Drive(with(coulomb_drive(), "external_torque", {{"torque", torque}, {"start", 0.0}, {"duration", 9.0}}));
+  };
+  for (const double way : {1.0, -1.0}) {
+    const Drive helping = pushed(way * kLarge), opposing = pushed(-way * kLarge);
+    EXPECT_EQ(run(helping, helping.at(0.0, 0.0), 0.0, 100, 0.001).x, 0.0);
+    EXPECT_EQ(run(helping, helping.at(0.0, 0.0), way * 0.9 * kCoulomb, 100, 0.001).x, 0.0);
+    EXPECT_EQ(run(opposing, opposing.at(0.0, 0.0), way * 0.9 * (kLarge + kCoulomb), 100, 0.001).x, 0.0);
+    EXPECT_GT(way * run(opposing, opposing.at(0.0, 0.0), way * 1.1 * (kLarge + kCoulomb), 100, 0.001).x, 0.0);
+    // In motion the whole force acts: it stops the axis, and does not drive it back.
+    const DriveState slowed = run(opposing, opposing.at(0.0, way * 10.0), 0.0, 1, 0.001);
+    EXPECT_NEAR(way * (way * 10.0 - slowed.w), 0.001 / kInertia * (kLarge + kCoulomb + 10.0 * sim_test::kViscous),
+                5e-3);
+    const DriveState stopped = run(opposing, opposing.at(0.0, way * 1.0), 0.0, 100, 0.001);
+    EXPECT_EQ(stopped.w, 0.0);
+  }
+  sim::DriveDescription direct;
+  direct.data.kind = sim::DriveKind::linear;
+  direct.data.force_constant_N_per_V = 1.0;
+  direct.effects = {sim_test::entry("inertia", {{"J", 2.0}}),
+                    sim_test::entry("external_torque", {{"torque", 1.0}, {"start", 0.0}, {"duration", 9.0}})};
+  const Drive linear(direct);
+  EXPECT_NEAR(run(linear, linear.at(0.0, 0.0), 0.0, 100, 0.001).w, 0.05, 1e-9);
 }
 
 TEST(LoadTorques, AddUp) {
