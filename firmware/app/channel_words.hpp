@@ -72,7 +72,8 @@ std::uint32_t channel_word(const Axis& axis, Channel channel) {
       break;
   }
   return static_cast<std::uint32_t>(axis.state()) | static_cast<std::uint32_t>(axis.fault()) << 8 |
-         (seen.saturated ? 1u << 16 : 0u);
+         (seen.saturated ? 1u << 16 : 0u) |
+         (axis.parameters().friction_feedforward_on && !axis.control_law().feeds_friction() ? 1u << 17 : 0u);
 }
 
 /// A row that a SupervisedAxis kept from before its fault; false beyond the last.

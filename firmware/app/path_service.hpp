@@ -56,6 +56,7 @@ class PathService {
                            Traits::from_increment(limits.jerk)};
     }
     follower_.open(request.mask, request.units, start, limits_of_axes);
+    is_held_for_process_ = false;
     contact_ = contact;
     probe_stop_ = request.probe;
     for (std::size_t i = 0; i < kAxes; ++i)
@@ -109,8 +110,17 @@ class PathService {
     const ShutOut guard;
     if (!follower_.is_open()) return Status::wrong_state;
     follower_.hold(request.held != 0);
+    if (request.held == 0) is_held_for_process_ = false;
     follower_.override_rate(request.permille == 1000 ? kOneCount : kOneCount / 1000 * request.permille);
     return Status::ok;
+  }
+
+  /// Holds the feed until set_rate() releases it. For the background.
+  void hold_for_process() {
+    const ShutOut guard;
+    if (!is_moving()) return;
+    follower_.hold(true);
+    is_held_for_process_ = true;
   }
 
   PathStatePayload state() const {
@@ -119,7 +129,7 @@ class PathService {
     state.phase = static_cast<std::uint8_t>(follower_.phase());
     state.end = static_cast<std::uint8_t>(follower_.end());
     state.mask = static_cast<std::uint8_t>(follower_.mask());
-    state.held = follower_.is_held() ? 1 : 0;
+    state.held = !follower_.is_held() ? 0 : is_held_for_process_ ? kHeldForProcess : 1;
     state.elapsed = follower_.elapsed();
     state.ahead = follower_.ahead();
     state.passed_nodes = follower_.passed_nodes();
@@ -193,6 +203,7 @@ class PathService {
   Follower follower_;
   ProbeContact contact_ = ProbeContact::none;
   ProbeStop probe_stop_ = ProbeStop::none;
+  bool is_held_for_process_ = false;
   unsigned disabled_at_end_ = 0;  ///< axes
   ClientToken client_ = 0;
 };

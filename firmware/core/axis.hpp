@@ -50,7 +50,8 @@ class Axis {
     feedforward_ = parameters.zero_phase_feedforward_on
                        ? zero_phase_feedforward(parameters.drive, parameters.Kc, travel_per_velocity)
                        : backward_difference_feedforward(parameters.Kc);
-    if (parameters.friction_feedforward_on) friction_.configure(parameters.friction);
+    feeds_friction_ = parameters.friction_feedforward_on;
+    if (feeds_friction_) friction_.configure(parameters.friction);
     compensation_.configure(parameters.compensation, parameters.friction_feedforward_on, parameters.friction,
                             parameters.sample_period_s);
     backlash_.configure(parameters.compensation.backlash);
@@ -92,6 +93,21 @@ class Axis {
     forget_excitation();
     hal_.drive_enable().set(false);
     put_out_zero();
+  }
+
+  /// The curve of the parameters, if feed-forward is among them: volts at a reference velocity.
+  constexpr Scalar friction_at(Scalar velocity) const { return friction_(velocity); }
+  constexpr bool feeds_friction() const { return feeds_friction_; }
+  /// Takes friction feed-forward back, or gives it again. The estimate takes over what the command loses: with
+  /// cancellation the command has no step.
+  constexpr void feed_friction(bool on) {
+    if (on == feeds_friction_ || !parameters_.friction_feedforward_on) return;
+    const Scalar covered_V = friction_(telemetry_.reference_velocity);
+    const Scalar moved_V = on ? Scalar(0) - covered_V : covered_V;
+    telemetry_.estimate.disturbance = telemetry_.estimate.disturbance + moved_V;
+    model_input_V_ = model_input_V_ + moved_V;
+    feeds_friction_ = on;
+    compensation_.feed_friction(on);
   }
 
   /// Added to the control signal of every step from now on, V; in an open loop it is the whole command.
@@ -347,7 +363,7 @@ class Axis {
       telemetry_.friction_V =
           compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway(), telemetry_.homed);
     else
-      telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
+      telemetry_.friction_V = feeds_friction_ ? friction_(preview_.velocity(1)) : Scalar(0);
     const Scalar added_V = preview_.weighted_sum(feedforward_) + excitation_V_;
     Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity + added_V +
                        telemetry_.friction_V;
@@ -439,7 +455,8 @@ class Axis {
   bool decides_on_sensors_ = true;
   bool is_open_loop_ = false;
   bool is_closed_loop_ = false;  ///< enabled, and not in open loop
-  bool is_plain_loop_ = false;   ///< the same, and only backlash compensation changes the reference
+  bool feeds_friction_ = false;
+  bool is_plain_loop_ = false;  ///< the same, and only backlash compensation changes the reference
   Scalar excitation_V_{};
   BacklashCrossing backlash_;
   ControlFilters<Scalar> filters_;

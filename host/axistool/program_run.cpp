@@ -88,15 +88,28 @@ class Operator {
   host::PathWish wish(const host::PathProgress& progress, const Planned& planned) {
     const std::string typed = keys_.take();  // includes keys typed before a stop
     for (const char key : typed) override_.press(key);
+    join_hold(progress, planned.path);
     const bool is_rapid =
         std::ranges::binary_search(planned.program.rapid_lines, host::line_at(planned.path, progress.elapsed_s));
     return {.held = held,
-            .stop = interrupted(),
+            .stop = interrupted() || ends_,
             .permille = override_.permille(is_rapid),
             .resume = goes_on(progress, typed.find('\n') != std::string::npos)};
   }
 
  private:
+  /// The board holds the feed by itself until the operator releases it. Without an operator the program ends.
+  void join_hold(const host::PathProgress& progress, const host::PlannedPath& path) {
+    if (progress.state.held == firmware::kHeldForProcess && !is_joined_) {
+      is_joined_ = held = true;
+      ends_ = ::isatty(STDIN_FILENO) == 0;
+      fmt::print(stderr, "\r\033[Kline {}: the force of the process exceeds feedback.hold_effort: {}\n",
+                 host::line_at(path, progress.elapsed_s),
+                 ends_ ? "the program ends" : "the feed is held; Ctrl-Z continues, Ctrl-C ends the program");
+    }
+    if (!held) is_joined_ = false;  // the operator has released it
+  }
+
   bool goes_on(const host::PathProgress& progress, bool pressed) {
     if (progress.waits != announced_ && progress.waits != nullptr)
       fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
@@ -115,6 +128,8 @@ class Operator {
   bool relative_;
   const RunArguments& arguments_;
   const host::PathStop* announced_ = nullptr;
+  bool is_joined_ = false;  ///< the board's own hold has become the operator's
+  bool ends_ = false;
 };
 
 /// Runs a program in parts: each probing move is one part, and the next part begins where it ended.

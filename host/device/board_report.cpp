@@ -107,7 +107,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
                     {"at_rest", (now.flags & firmware::kAxisAtRest) != 0},
                     {"homed", (now.flags & firmware::kAxisHomed) != 0},
-                    {"pitch_corrected", (now.flags & firmware::kAxisPitch) != 0}});
+                    {"pitch_corrected", (now.flags & firmware::kAxisPitch) != 0},
+                    {"friction_taken_back", (timing.friction_taken_back >> axis & 1u) != 0}});
     if (const auto place = place_of_counts(now.counts(), axis, values))
       axes.back().update({{"position", place->value}, {"position_unit", place->unit}});
   }
@@ -156,12 +157,13 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
     const firmware::AxisStatus& now = status.axis[axis];
     const auto place = place_of_counts(now.counts(), axis, values);
     text += fmt::format(
-        "axis {}       {}, {}{}{}{}\n", firmware::kAxisNames[axis], state_text(now),
+        "axis {}       {}, {}{}{}{}{}\n", firmware::kAxisNames[axis], state_text(now),
         place ? fmt::format("{:.4f} {}", place->value, place->unit) : fmt::format("{} counts", now.counts()),
         (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
         : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
                                                   : " from where it was (not homed)",
         (now.flags & firmware::kAxisPitch) != 0 ? ", pitch error taken off" : "",
+        (timing.friction_taken_back >> axis & 1u) != 0 ? ", friction feed-forward taken back" : "",
         now.fault == 0 ? "" : ", " + fault_text(now));
   }
   if (const auto problem = store_problem(status)) text += *problem + "\n";

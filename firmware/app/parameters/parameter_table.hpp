@@ -76,11 +76,17 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "on the speed error, eq. (50)"},
     {82, axis, "feedback.cancel_disturbance", toggle, "", "", 0, 1, 0, while_disabled,
      "add the estimated disturbance to the command"},
+    {83, axis, "feedback.hold_effort", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
+     "estimated disturbance above which the feed of a path is held until it is released; with feedforward.friction it "
+     "is "
+     "the process force; 0: no limit"},
 
     {96, axis, "feedforward.zero_phase", toggle, "", "", 0, 1, 0, while_disabled,
      "zero phase error tracking; off: the reference speed alone, eqs. (50) and (52)"},
     {97, axis, "feedforward.friction", toggle, "", "", 0, 1, 0, while_disabled,
      "add the friction of the reference speed to the command, eq. (19)"},
+    {98, axis, "feedforward.friction_watch", toggle, "", "", 0, 1, 0, while_disabled,
+     "take friction feed-forward back while the axis has followed worse with it over its last strokes"},
 
     {112, axis, "friction.static_positive", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
      "magnitude at standstill, eq. (19)"},

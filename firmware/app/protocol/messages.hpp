@@ -175,6 +175,7 @@ struct TimingPayload {
   std::uint32_t cycles_average = 0;  ///< processor clocks of the control interrupt; 0: not measured
   std::uint32_t cycles_worst = 0;
   std::uint32_t processor_Hz = 0;
+  std::uint32_t friction_taken_back = 0;  ///< mask of the axes whose friction feed-forward is off by its watch, now
 };
 
 struct TimingRequest {

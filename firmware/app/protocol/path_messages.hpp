@@ -47,11 +47,13 @@ struct PathRateRequest {
   std::uint8_t reserved = 0;
 };
 
+inline constexpr std::uint8_t kHeldForProcess = 2;  ///< by the axis's limit feedback.hold_effort
+
 struct PathStatePayload {
   std::uint8_t phase = 0;  ///< PathPhase
   std::uint8_t end = 0;    ///< PathEnd
   std::uint8_t mask = 0;
-  std::uint8_t held = 0;
+  std::uint8_t held = 0;      ///< 0 no, 1 by request, 2 kHeldForProcess
   std::uint32_t elapsed = 0;  ///< samples of the path
   std::uint32_t ahead = 0;    ///< samples of the path still to come
   std::uint32_t passed_nodes = 0;

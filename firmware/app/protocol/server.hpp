@@ -6,7 +6,9 @@
 #include <bit>
 
 #include "firmware/app/board_application.hpp"
+#include "firmware/app/friction_watch.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "firmware/app/process_limit.hpp"
 #include "firmware/app/protocol/identity_reply.hpp"
 #include "firmware/app/protocol/path_requests.hpp"
 #include "firmware/app/protocol/pitch_requests.hpp"
@@ -28,6 +30,8 @@ class ProtocolServer {
   void poll(Usb& usb, const ProgramUse& use = {}) {
     use_ = use;
     app_.path().poll();
+    process_limit_.poll(app_);
+    friction_watch_.poll(app_);
     app_.keep_fault_log();
     app_.settings().poll();
     if (update_.trial_has_failed()) app_.board().restart();
@@ -305,6 +309,7 @@ class ProtocolServer {
     payload.cycles_average = use_.cycles_average;
     payload.cycles_worst = use_.cycles_worst;
     payload.processor_Hz = use_.processor_Hz;
+    payload.friction_taken_back = friction_watch_.taken_back(app_);
     reply.put(payload);
     if (request.begin_anew != 0) app_.begin_timing_anew();
     return Status::ok;
@@ -457,6 +462,8 @@ class ProtocolServer {
   const ImageHeader& image_;
   BootFacts boot_;
   UpdateRequests<Application> update_;
+  FrictionWatch<Application> friction_watch_;
+  ProcessLimit<Application> process_limit_;
   ProgramUse use_{};
   hal::HidReport reply_{};
   hal::HidReport samples_{};

@@ -1,4 +1,6 @@
 // A board's background: protocol, supervision, service port. Nothing here waits, so the watchdog is fed in time.
+#include <optional>
+
 #include "firmware/app/protocol/server.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
@@ -9,6 +11,8 @@
 namespace firmware::boards {
 
 namespace {
+
+std::optional<ProtocolServer<Application>> server;  ///< not on the stack, which is short
 
 /// Shows the state of the axes; only the control interrupt acts on them.
 void supervise() {
@@ -73,7 +77,7 @@ extern "C" [[noreturn]] void run_board() {
   if (const auto ended = entry_of(last_run)) application.log_end_of_last_run(*ended);
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
                                  Board::kIsSimulated, board.lacks_brown_out_reset()};
-  firmware::ProtocolServer<Application> server(application, this_image(), boot);
+  server.emplace(application, this_image(), boot);
   if (!board.start_usb()) out << "periphery: the USB controller does not answer\n";
   board.start_control();
   board.start_watchdogs();
@@ -81,8 +85,8 @@ extern "C" [[noreturn]] void run_board() {
     supervise();
     if (liveness.may_feed()) board.feed_watchdog();
     board.usb().poll();
-    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes(), control_cycles.average(), control_cycles.worst(),
-                              board.processor_Hz()});
+    server->poll(board.usb(), {stack_used_bytes(), stack_size_bytes(), control_cycles.average(), control_cycles.worst(),
+                               board.processor_Hz()});
     serve(last_run, image);
   }
 }

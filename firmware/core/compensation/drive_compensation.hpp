@@ -23,6 +23,7 @@ class DriveCompensation {
 
   constexpr bool is_on() const { return is_on_; }
   constexpr void reset() { presliding_.reset(); }
+  constexpr void feed_friction(bool on) { friction_on_ = on; }
 
   /// Volts for the period in which the reference moves at `velocity`; `middle` is its position halfway. Effects that
   /// depend on the position (cogging, friction along the travel) act only if `middle` is counted from home.

@@ -48,6 +48,8 @@ class SupervisedAxis {
     axis_.open_loop();
     return true;
   }
+  constexpr void feed_friction(bool on) { axis_.feed_friction(on); }  ///< as of Axis
+  constexpr const Axis<Scalar, Hal>& control_law() const { return axis_; }
   constexpr void excite(Scalar volts) { axis_.excite(volts); }  ///< as of Axis
   /// Ready, and at rest for a while: a loop that closes on a moving axis would stop it with a jerk. The amplifier's
   /// ready contact must be open: a closed contact could not show when the amplifier begins to drive.
@@ -127,8 +129,7 @@ class SupervisedAxis {
   /// Whether it read the index in its last step; the other axes of a group read theirs in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
   constexpr void leave_index_for_later() { index_.leave_for_later(); }
-  /// As for Axis, before a late step.
-  constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
+  constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }  ///< as of Axis
 
   constexpr CountPosition leading() const { return axis_.leading(); }  ///< as of Axis
   /// Whether a path or a move may lead there.
@@ -364,15 +365,14 @@ class SupervisedAxis {
       case DriveStep::close_loop:
         axis_.enable();
         release_brake(true);
-        break;
+        return 0;
       case DriveStep::started:
         return SupervisorEvent::started | SupervisorEvent::started;
       case DriveStep::late:
         return latch(AxisFault::amplifier_not_ready) | SupervisorEvent::drop_fault;
       default:
-        break;
+        return 0;
     }
-    return 0;
   }
 
   /// Handles the rare cases: faults, requests, and all states except a closed loop in normal operation.

@@ -41,7 +41,7 @@ struct BoardOnABench {
   using Application = firmware::BoardApplication<Scalar, Board>;
   static constexpr std::size_t kAxes = axes;
 
-  Board board{machines(), 1, switches()};
+  Board board;
   Application application{board};
   firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server{application, image, {}};
@@ -67,7 +67,9 @@ struct BoardOnABench {
   }
 
   /// Starts with the present contents of the flash.
-  explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr) {
+  explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr,
+                         const typename Board::Drives& drives = machines())
+      : board(drives, 1, switches()) {
     if (flash != nullptr) board.parameter_flash() = *flash;
     board.usb().plug_in();
     application.start();

@@ -117,6 +117,8 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
     const std::string_view name = firmware::kParameters[firmware::row_at(place)].name;
     if (name.starts_with("homing.") || name.starts_with("unfitted."))
       continue;  // homing_on_board_test.cpp, motion_owner_test.cpp
+    if (name == "feedback.hold_effort" || name == "feedforward.friction_watch")
+      continue;  // path_on_board_test.cpp, friction_watch_test.cpp
     if (name == "limits.unhomed_velocity" || name == "limits.fault_deceleration")
       continue;  // board_application_test.cpp; below
     if (name.starts_with("amplifier.") || name.starts_with("brake.") || name.starts_with("encoder."))

@@ -249,4 +249,43 @@ TYPED_TEST(PathOnBoard, NeedsHomeUnlessItIsRelative) {
   EXPECT_EQ(this->open(true), Status::ok);
 }
 
+/// The machine has no friction, so that its curve acts as a disturbance of 1.7 Nm and more. Catches a limit that does
+/// not act or acts below its value, a hold that leaves the circle, and one that the host cannot release.
+TYPED_TEST(PathOnBoard, HoldsTheFeedAboveTheLimitOfTheDisturbance) {
+  for (const double limit_Nm : {0.5, 20.0}) {
+    firmware::ParameterValues values = this->bench.application.active();
+    this->bench.ask(MessageType::disable, firmware::AxesRequest{3});
+    this->bench.run(300);
+    for (const char* name : {"x.feedback.hold_effort", "y.feedback.hold_effort"})
+      firmware_test::set(values, name, limit_Nm);
+    ASSERT_EQ(this->bench.download(values).status, Status::ok);
+    this->bench.run(300);
+    ASSERT_EQ(this->bench.ask(MessageType::enable, firmware::AxesRequest{3}).status, Status::ok);
+    this->bench.run(20);
+    ASSERT_EQ(this->open(true), Status::ok);
+    this->send(this->pieces());
+    ASSERT_EQ(this->ask(MessageType::start_path), Status::ok);
+    this->keep_alive(1000);
+    const bool is_small = limit_Nm < 1.0;
+    EXPECT_EQ(this->state().held, is_small ? firmware::kHeldForProcess : 0) << limit_Nm;
+    EXPECT_EQ(this->state().permille, is_small ? 0 : 1000) << limit_Nm;
+    if (is_small) {
+      const std::uint32_t held_at = this->state().elapsed;
+      EXPECT_LT(held_at, 400u);
+      EXPECT_EQ(this->bench.ask(MessageType::path_rate, firmware::PathRateRequest{500, 1, 0}).status, Status::ok);
+      EXPECT_EQ(this->state().held, firmware::kHeldForProcess) << "an override does not release it";
+      for (int k = 0; k < 20; ++k) {
+        EXPECT_EQ(this->bench.ask(MessageType::path_rate, firmware::PathRateRequest{1000, 0, 0}).status, Status::ok);
+        EXPECT_EQ(this->state().held, 0);
+        this->keep_alive(20);
+      }
+      EXPECT_GT(this->state().elapsed, held_at);
+      EXPECT_EQ(this->ask(MessageType::stop_path), Status::ok);
+    }
+    this->keep_alive(1000);
+    EXPECT_LT(this->off, 1e-3) << "counts";
+    EXPECT_EQ(this->fault(0), AxisFault::none);
+  }
+}
+
 }  // namespace
