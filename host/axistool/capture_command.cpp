@@ -13,7 +13,9 @@
 #include "host/device/motion.hpp"
 #include "host/device/quantity.hpp"
 #include "host/device/triggered_capture.hpp"
+#include "host/identify/force_estimate.hpp"
 #include "host/model/model_file.hpp"
+#include "host/parameters/axis_parameters.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/progress.hpp"
 
@@ -22,7 +24,7 @@ namespace axistool {
 namespace {
 
 struct CaptureArguments : DeviceArguments {
-  std::string output, axis = "x", trigger, drive, sheet;
+  std::string output, axis = "x", trigger, drive, sheet, model;
   std::vector<std::string> channels, jogs;
   std::string before;
   double duration_s = 0.0, wait_s = 60.0;
@@ -52,6 +54,10 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
     settings.trigger = host::parse_trigger(arguments.trigger, settings.kind);
     settings.channels.push_back(settings.trigger->channel);
   }
+  using firmware::Channel;
+  if (!arguments.model.empty())
+    for (const Channel one : {Channel::counts, Channel::reference_velocity, Channel::disturbance, Channel::friction})
+      settings.channels.push_back(one);
   std::ranges::sort(settings.channels);
   settings.channels.erase(std::unique(settings.channels.begin(), settings.channels.end()), settings.channels.end());
   settings.every = static_cast<std::uint16_t>(arguments.every);
@@ -98,8 +104,11 @@ const std::string& name_of_drive(const CaptureArguments& arguments) {
   return arguments.drive.empty() ? arguments.axis : arguments.drive;
 }
 
-void write(const CaptureArguments& arguments, const host::Capture& capture, const host::CaptureSettings& settings) {
+void write(const CaptureArguments& arguments, const host::Capture& capture, const host::CaptureSettings& settings,
+           const firmware::AxisValues& board) {
   host::Record record = host::capture_record(capture, settings, name_of_drive(arguments));
+  if (!arguments.model.empty())
+    host::add_process_force(record, host::read_model(arguments.model), host::estimator_of(board));
   host::write_record(record, arguments.output);
   nlohmann::json document{{"format", "axis-capture/1"}, {"file", arguments.output},
                           {"rows", record.size()},      {"sample_period_s", record.sample_period_s},
@@ -113,13 +122,14 @@ void write(const CaptureArguments& arguments, const host::Capture& capture, cons
 }
 
 /// Capture in the board's own memory, at loop rate, independent of the connection's speed.
-void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings settings) {
+void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings settings,
+                  const firmware::AxisValues& values) {
   host::TriggeredSettings wanted;
   wanted.wide = arguments.wide;
   wanted.capture = std::move(settings);
   if (arguments.last) {
     const host::Capture capture = host::read_triggered_capture(board, wanted);
-    write(arguments, capture, wanted.capture);
+    write(arguments, capture, wanted.capture, values);
     return;
   }
   wanted.trigger = host::parse_board_trigger(arguments.trigger, wanted.capture.kind);
@@ -128,7 +138,7 @@ void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, h
     throw host::Failure(host::ExitCode::usage, fmt::format("{}: the board has no such axis", arguments.trigger));
   if (arguments.dry_run) return;
   catch_interrupts();
-  write(arguments, host::run_triggered_capture(board, wanted, interrupted), wanted.capture);
+  write(arguments, host::run_triggered_capture(board, wanted, interrupted), wanted.capture, values);
 }
 
 void run(const CaptureArguments& arguments) {
@@ -137,9 +147,11 @@ void run(const CaptureArguments& arguments) {
   const firmware::ParameterValues values = board.read_values();
   host::CaptureSettings settings = settings_of(arguments, values);
   settle_scale(arguments, board, settings);
-  if (arguments.last || host::is_board_trigger(arguments.trigger)) return run_on_board(arguments, board, settings);
+  const firmware::AxisValues axis = values.axis(settings.axis);
+  if (arguments.last || host::is_board_trigger(arguments.trigger))
+    return run_on_board(arguments, board, settings, axis);
   host::require_capturable(values, settings);
-  if (!values.axis(settings.axis).get<"drive.fitted">() && talks(arguments))
+  if (!axis.get<"drive.fitted">() && talks(arguments))
     fmt::print(stderr,
                "axistool: axis {} is not fitted: counts and volts use the board's initial scales, and nothing moves; "
                "first set-params the file that `design` wrote\n",
@@ -177,7 +189,7 @@ void run(const CaptureArguments& arguments) {
     }
   }
   if (enables) host::disable_and_wait(board, mask);
-  write(arguments, capture, settings);
+  write(arguments, capture, settings, axis);
   journal.remove();
   host::require_no_loss(capture, arguments.output);
 }
@@ -220,6 +232,10 @@ void add_capture(CLI::App& app) {
   add_input(*command, "--sheet", arguments->sheet,
             "data sheet of the drive; with [drive.load_encoder] the record also has the table position from the scale, "
             "x2_mm");
+  add_input(
+      *command, "--model", arguments->model,
+      "model of the drive: the record also has the process force on the table, process_force_N, with its 95 % band "
+      "in the header");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(

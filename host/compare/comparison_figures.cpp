@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
+#include "host/identify/force_estimate.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/record/record_origin.hpp"
 
@@ -107,6 +109,26 @@ void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, c
 
 }  // namespace
 
+namespace {
+
+/// The board's estimate of the process force, where the record holds it, with its 95 % band.
+void add_process_force(const Record& record, TimePlot& plot) {
+  const auto force = std::ranges::find(record.extra, kProcessForce, &ExtraChannel::name);
+  if (force == record.extra.end()) return;
+  TracePanel panel{"process force", "N", {{"estimated", SeriesRole::measured, force->values}}};
+  const auto band = record.header.find(kProcessForceBand);
+  const double half_N = band == record.header.end() ? 0.0 : std::strtod(band->second.c_str(), nullptr);
+  for (const double side : {1.0, -1.0}) {
+    if (!(half_N > 0.0)) break;
+    std::vector<double> edge = force->values;
+    for (double& value : edge) value += side * half_N;
+    panel.traces.push_back({side > 0.0 ? "+95 % band" : "−95 % band", SeriesRole::floor, std::move(edge)});
+  }
+  plot.panels.push_back(std::move(panel));
+}
+
+}  // namespace
+
 TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record_index,
                            const std::optional<TimeSpan>& stretch) {
   const ComparedRecord& compared = models.front().set.records[record_index];
@@ -151,6 +173,7 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
   if (record.has_speed()) add("speed", units.speed, record.w, &Prediction::w, compared.floor.w);
   if (record.has_position()) add("position", units.travel, record.x, &Prediction::x, compared.floor.x);
   plot.panels.push_back({"command", "V", {{"command", SeriesRole::other, prepared.u_V}}});
+  add_process_force(record, plot);
   return plot;
 }
 

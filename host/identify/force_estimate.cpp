@@ -1,8 +1,13 @@
 #include "host/identify/force_estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
+#include "host/exit_codes.hpp"
+#include "host/identify/inverse_model.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -32,6 +37,50 @@ ForceEstimate force_estimate(const AxisDesign& design, const sim::DataSheet& dat
   const Eigen::Vector3d behind = (Eigen::Matrix3d::Identity() - memory).lu().solve(rest * design.model.W.col(1));
   found.delay_s = behind(2) * data.sample_period_s;
   return found;
+}
+
+namespace {
+
+const std::vector<double>& column_of(const Record& record, std::string_view name) {
+  const auto found = std::ranges::find(record.extra, name, &ExtraChannel::name);
+  if (found == record.extra.end())
+    throw Failure(ExitCode::bad_input, fmt::format("{}: a process force needs the column {}", record.path, name));
+  return found->values;
+}
+
+/// Disturbance that the model explains, V: its friction and its loads at the reference.
+std::vector<double> known_disturbance_V(const Record& record, const sim::DriveDescription& model) {
+  const RigidAxis axis = rigid_axis(model);
+  Motion reference;
+  reference.t_s = record.t_s;
+  reference.travel = record.x;
+  reference.speed = record.w_ref;
+  reference.acceleration.assign(record.size(), 0.0);
+  reference.effort.assign(record.size(), 0.0);
+  std::vector<double> known = inverse_effort(sim::Drive(model), reference);
+  for (std::size_t k = 0; k < known.size(); ++k)
+    known[k] = (known[k] - axis.viscous * record.w_ref[k]) / axis.effort_per_volt;
+  return known;
+}
+
+}  // namespace
+
+void add_process_force(Record& record, const sim::DriveDescription& model,
+                       const Eigen::Matrix<double, 3, Eigen::Dynamic>& Kobs) {
+  const std::vector<double>&estimate_V = column_of(record, "d_hat_V"), &covered_V = column_of(record, "u_friction_V");
+  if (record.x.empty() || record.w_ref.empty())
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: a process force needs the position and the reference speed", record.path));
+  AxisDesign design = design_axis(model, {});
+  design.Kobs = Kobs;
+  const ForceEstimate stated = force_estimate(design, model.data);
+  const std::vector<double> known_V = known_disturbance_V(record, model);
+  ExtraChannel force{kProcessForce, std::vector<double>(record.size()), {}};
+  for (std::size_t k = 0; k < record.size(); ++k)
+    force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_V[k] - known_V[k]);
+  record.extra.push_back(std::move(force));
+  record.header[kProcessForceBand] = fmt::format("{:.4g}", stated.band_N);
+  record.header[kProcessForceDelay] = fmt::format("{:.4g}", stated.delay_s);
 }
 
 }  // namespace host

@@ -1,6 +1,7 @@
-// Converts a design to the parameters of the control core.
+// Converts a design to the parameters of the control core, and the estimator back.
 #pragma once
 
+#include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/core/axis_parameters.hpp"
 #include "host/parameters/board_parameters.hpp"
 #include "host/parameters/control_filters.hpp"
@@ -16,5 +17,8 @@ firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& mod
 /// The same with the switches of board_parameters(), as on a board after `design` and `set-params`.
 firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                     const ControlFilterChoice& filters = {});
+
+/// The estimator of a board's axis, Kobs of a design.
+Eigen::Matrix<double, 3, Eigen::Dynamic> estimator_of(const firmware::AxisValues& board);
 
 }  // namespace host
