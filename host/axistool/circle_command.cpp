@@ -83,12 +83,16 @@ std::vector<std::string> make(CircleArguments arguments) {
   constexpr std::uint8_t kMask = 3;
   const bool was_enabled = host::are_enabled(board, kMask);
   if (!was_enabled) host::enable_and_wait(board, kMask);
+  const auto leave = [&] {
+    if (!was_enabled) host::disable_and_wait(board, kMask);
+  };
   std::vector<std::string> files;
   for (const Pass& pass : passes_of(arguments)) {
     arguments.file = "circle " + pass.name;
     arguments.capture = (std::filesystem::path(arguments.folder) / (pass.name + ".csv")).string();
     const ProgramOutcome outcome = run_program(board, machine, true, arguments, pass.program);
     if (outcome.end != firmware::PathEnd::completed) {
+      leave();
       for (const std::size_t axis : machine.scale.axes)
         host::require_no_fault(board.status(), static_cast<std::uint8_t>(axis));
       throw host::Failure(
@@ -98,7 +102,7 @@ std::vector<std::string> make(CircleArguments arguments) {
     files.push_back(arguments.capture);
     if (talks(arguments)) fmt::print("{}: contour error {:.1f} um at most\n", arguments.capture, outcome.worst_um);
   }
-  if (!was_enabled) host::disable_and_wait(board, kMask);
+  leave();
   return files;
 }
 

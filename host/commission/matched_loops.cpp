@@ -51,6 +51,18 @@ void tell_design(const MachineDesign& machine, const CommissionTalk& talk) {
                   matched.feed_mm_s, matched.line_45_um, own.line_45_um, matched.ellipse_um, own.ellipse_um));
 }
 
+/// Disables the axes and restores the parameters; false if the board has gone.
+bool give_back(std::deque<CommissionSession>& sessions, const firmware::ParameterValues& before) noexcept {
+  try {
+    for (CommissionSession& session : sessions) session.leave_standing();
+    for (CommissionSession& session : sessions) session.recover();
+    sessions.front().download(before);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 nlohmann::json match_loops(BoardClient& board, const std::vector<CommissionedAxis>& axes, const CommissionTalk& talk) {
@@ -94,11 +106,10 @@ nlohmann::json match_loops(BoardClient& board, const std::vector<CommissionedAxi
     }
     if (axes.front().options.save) board.save();
   } catch (const Failure& failure) {
-    for (CommissionSession& session : sessions) session.leave_standing();
-    if (failure.code == ExitCode::device_fault) board.clear_faults();
-    sessions.front().download(before);
-    throw Failure(failure.code,
-                  fmt::format("match: {}. The axes are disabled and have their own loops again", failure.what()));
+    throw Failure(failure.code, fmt::format("match: {}. {}", failure.what(),
+                                            give_back(sessions, before)
+                                                ? "The axes are disabled and have their own loops again"
+                                                : "The board does not answer: its loops are unknown until it does"));
   }
   return document;
 }

@@ -54,12 +54,12 @@ HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim
     for (std::size_t i = 0; i < drives.size(); ++i)
       if (!keeps(drives[i], aim, filters, f, modulus)) stopped_by.push_back(i);
     found.best_modulus = std::max(found.best_modulus, modulus);
-    if (!stopped_by.empty()) {
-      if (found.stopped_by.empty()) found.stopped_by = stopped_by;
+    if (stopped_by.empty()) {
+      found.bandwidth_Hz = f;
       continue;
     }
-    found.bandwidth_Hz = f;
-    found.stopped_by.clear();
+    if (found.bandwidth_Hz > 0.0 || found.stopped_by.empty()) found.stopped_by = stopped_by;
+    if (found.bandwidth_Hz > 0.0) break;
   }
   return found;
 }

@@ -41,7 +41,8 @@ struct HighestLoop {
 /// Ratio of neighbouring bandwidths that highest_bandwidth() tries.
 inline constexpr double kBandwidthStep = 1.04;
 
-/// The highest bandwidth at which all drives meet the requirements with these filters.
+/// The highest bandwidth up to which all drives meet the requirements with these filters, from the lowest at which they
+/// do: beyond a gap a small change of the drive would fall into it.
 HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
                               const ControlFilterChoice& filters);
 

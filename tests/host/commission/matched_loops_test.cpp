@@ -2,10 +2,14 @@
 // errors; and the board's parameters after a refusal.
 #include "host/commission/matched_loops.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "host/exit_codes.hpp"
 #include "host/model/model_file.hpp"
@@ -16,6 +20,25 @@
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
+
+/// A link that breaks when it is told to.
+class FragileLink : public host::ReportLink {
+ public:
+  FragileLink(std::unique_ptr<host::ReportLink> link, const bool& is_broken)
+      : link_(std::move(link)), is_broken_(is_broken) {}
+  void send(const hal::HidReport& report) override {
+    if (is_broken_) throw host::Failure(host::ExitCode::no_such_device, "the board is gone");
+    link_->send(report);
+  }
+  std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) override { return link_->receive(limit); }
+  std::chrono::steady_clock::time_point now() const override { return link_->now(); }
+  void wait(std::chrono::milliseconds duration) override { link_->wait(duration); }
+  std::string name() const override { return "fragile"; }
+
+ private:
+  std::unique_ptr<host::ReportLink> link_;
+  const bool& is_broken_;
+};
 
 class MatchedLoops : public testing::Test {
  protected:
@@ -40,12 +63,14 @@ class MatchedLoops : public testing::Test {
     }
   }
 
-  static host::BoardClient board() {
+  host::BoardClient board() {
     std::vector<host::SimulatedDrive> drives;
     for (const host::AxisTask& task : axes_test::machine()) drives.push_back(host::usual_axis(task.model));
-    return host::BoardClient(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", 1}));
+    auto link = std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", 1});
+    return host::BoardClient(std::make_unique<FragileLink>(std::move(link), is_broken_));
   }
 
+  bool is_broken_ = false;
   const TemporaryFolder disk_;
   std::array<std::unique_ptr<host::CommissionFolder>, 2> folders_;
   std::vector<host::CommissionedAxis> axes_;
@@ -85,6 +110,23 @@ TEST_F(MatchedLoops, ARefusalLeavesTheBoardAsItWas) {
     EXPECT_EQ(failure.code, host::ExitCode::refused);
   }
   EXPECT_EQ(board_.read_values(), before);
+}
+
+/// Catches a failure to restore the board that hides why the loops were not matched.
+TEST_F(MatchedLoops, ABoardThatHasGoneIsSaidToBeGone) {
+  host::CommissionTalk talk;
+  int asked = 0;
+  talk.consents = [&](const std::string&) {
+    is_broken_ = ++asked == 2;
+    return !is_broken_;
+  };
+  try {
+    host::match_loops(board_, axes_, talk);
+    ADD_FAILURE() << "not refused";
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, host::ExitCode::refused) << failure.what();
+    EXPECT_THAT(failure.what(), testing::HasSubstr("does not answer"));
+  }
 }
 
 }  // namespace
