@@ -177,6 +177,14 @@ def true_sizes(causes: dict[str, float], draw: dict[str, float], has_bar: bool, 
     return sizes
 
 
+def said_of(name: str, true_um: float, named: dict[str, dict]) -> str:
+    if name not in named:
+        return f"{name} {true_um:.2f} um MISSED"
+    low, high = named[name]["ci95"]
+    outside = "" if low <= true_um <= high else f", OUTSIDE {low:.2f} to {high:.2f}"
+    return f"{name} {true_um:.2f} um (said {named[name]['um']:.2f}{outside})"
+
+
 def trial(seed: int, folder: Path) -> dict[str, object]:
     causes, draw, has_bar = draw_machine(seed)
     motor = {axis: Axis(causes, axis, draw).run() for axis in "xy"}
@@ -196,8 +204,7 @@ def trial(seed: int, folder: Path) -> dict[str, object]:
               "squareness_told": has_bar or "squareness" in found["cannot_see"],
               "said": [(one["probability"], name in sizes) for name, one in named.items()]}
     print(f"seed {seed:3d} {'ballbar ' if has_bar else 'encoders'} {'right' if result['right'] else 'WRONG'}: "
-          + ", ".join(f"{name} {b:.2f} um (said {named[name]['um']:.2f})" if name in named else f"{name} {b:.2f} um MISSED"
-                      for name, b in sizes.items())
+          + ", ".join(said_of(name, b, named) for name, b in sizes.items())
           + "".join(f"; FALSE {name} {named[name]['um']:.2f} um p {named[name]['probability']:.2f}" for name in result["false"]),
           flush=True)
     return result
@@ -215,7 +222,7 @@ def main() -> int:
     print(f"{count} machines: {right} right; {sized} of {sizes} sizes within 10 % or 0.5 um; "
           f"{sum(one['within'] for one in all_of)} of {sizes} within their 95 % intervals; "
           f"named {len(said)} with a mean probability of {mean:.3f}, {true:.3f} of them true")
-    ok = right >= 0.9 * count and sized >= 0.9 * sizes
+    ok = right >= 0.9 * count and sized >= 0.9 * sizes and abs(mean - true) <= 0.05
     ok = ok and not any(one["unseen"] for one in all_of) and all(one["squareness_told"] for one in all_of)
     return 0 if ok else 1
 
