@@ -76,8 +76,9 @@ void add_process_force(Record& record, const sim::DriveDescription& model,
   const ForceEstimate stated = force_estimate(design, model.data);
   const std::vector<double> known_V = known_disturbance_V(record, model);
   ExtraChannel force{kProcessForce, std::vector<double>(record.size()), {}};
+  // The estimate of a row is of the period before it, whose feed-forward was that of the reference now.
   for (std::size_t k = 0; k < record.size(); ++k)
-    force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_V[k] - known_V[k]);
+    force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_V[k == 0 ? 0 : k - 1] - known_V[k]);
   record.extra.push_back(std::move(force));
   record.header[kProcessForceBand] = fmt::format("{:.4g}", stated.band_N);
   record.header[kProcessForceDelay] = fmt::format("{:.4g}", stated.delay_s);
