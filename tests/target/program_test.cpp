@@ -1,13 +1,12 @@
 // The program on the emulated board: feeding of the watchdog, interrupts, and replies.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <thread>
 
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/boards/emulated/report_cable.hpp"
 #include "tests/host/temporary_folder.hpp"
+#include "tests/target/cable_port.hpp"
 #include "tests/target/qemu.hpp"
 
 namespace {
@@ -87,33 +86,10 @@ TEST_F(Program, ControlGoesOnAfterAnOverrunOfTheConverter) {
   }
 }
 
-/// The computer's end of the cable.
-class CablePort {
- public:
-  CablePort(const std::filesystem::path& to_board, const std::filesystem::path& from_board)
-      : to_(open(to_board.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600)) {
-    if (mkfifo(from_board.c_str(), 0600) == 0) from_ = open(from_board.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    if (to_ < 0 || from_ < 0) throw std::runtime_error("no cable");
-  }
-  CablePort(const CablePort&) = delete;
-  CablePort& operator=(const CablePort&) = delete;
-  ~CablePort() {
-    close(to_);
-    close(from_);
-  }
-  void send(std::byte byte) const {
-    if (write(to_, &byte, 1) != 1) throw std::runtime_error("the cable takes nothing");
-  }
-  bool receive(std::byte& byte) const { return read(from_, &byte, 1) == 1; }
-
- private:
-  int to_ = -1, from_ = -1;
-};
-
 TEST_F(Program, AnswersWhatItsUsbInterruptHasTakenIn) {
   TemporaryFolder folder;
-  CablePort port(folder.path("to_board"), folder.path("link.in"));
-  const auto cable = std::make_unique<firmware::boards::ComputerEnd<CablePort>>(port);
+  target_test::CablePort port(folder.path("to_board"), folder.path("link.in"));
+  const auto cable = std::make_unique<firmware::boards::ComputerEnd<target_test::CablePort>>(port);
   Qemu board = target_test::start_program(folder.path(""));
   const auto wait_for = [&](auto holds) {
     for (int poll = 0; poll < 10'000; ++poll) {

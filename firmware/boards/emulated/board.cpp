@@ -137,6 +137,9 @@ void Board::obey(char letter) {
     case 'O':
       has_overrun_ = true;
       break;
+    case 'W':
+      drives_[1].become_heavy_and_late();
+      break;
     case 'Q':
       hal::qemu::exit_emulator(0);
     default:

@@ -13,13 +13,21 @@ class RigidDrive {
   void advance(float duration_s, std::int32_t code, bool is_enabled) {
     constexpr int kParts = 4;
     const float part_s = duration_s / kParts;
-    const float effort = is_enabled ? kEffort * static_cast<float>(code) : 0.0F;  // Nm
+    const std::int32_t acting = is_late_ ? earlier_code_ : code;
+    earlier_code_ = code;
+    const float effort = is_enabled ? kEffort * static_cast<float>(acting) / times_ : 0.0F;  // Nm, of a drive like x
     for (int part = 0; part < kParts; ++part) {
       const float before = speed_;
       move(effort, part_s);
       const float counts = 0.5F * (before + speed_) * part_s * kCountsPerRad;
       position_ += static_cast<std::int64_t>(counts * 4294967296.0F);
     }
+  }
+
+  /// From now on a drive with twice the inertia and friction, whose amplifier acts a control period later.
+  void become_heavy_and_late() {
+    times_ = 2.0F;
+    is_late_ = true;
   }
 
   std::uint32_t counts() const { return static_cast<std::uint32_t>(position_ >> 32); }
@@ -51,6 +59,9 @@ class RigidDrive {
     speed_ = speed_ != 0.0F && (next > 0.0F) != is_forward ? 0.0F : next;
   }
 
+  float times_ = 1.0F;  ///< inertia and friction, relative to the constants
+  bool is_late_ = false;
+  std::int32_t earlier_code_ = 0;
   float speed_ = 0.0F;         ///< rad/s
   std::int64_t position_ = 0;  ///< 2^-32 counts
   std::uint32_t noise_ = 1;

@@ -1,4 +1,4 @@
-// A G-code program on a simulated board within the test: the same loop without a bus.
+// A G-code program on a board; on a simulated one within the test it is the same loop without a bus.
 #pragma once
 
 #include <cmath>
@@ -22,18 +22,16 @@ struct PathInProcess {
   host::PathCapture capture;
 };
 
-/// Two axes that are these drives, with the parameters of the files.
-inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>& drives,
-                                       const std::vector<std::string>& parameters, const std::string& program) {
-  std::vector<host::SimulatedDrive> simulated;
-  for (const sim::DriveDescription& drive : drives) simulated.push_back({drive});
-  host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{simulated, "", 1}));
+/// The first axes of a board, with the parameters of the files; disabled before and afterwards.
+inline PathInProcess follow_on(host::BoardClient& board, std::size_t axes, const std::vector<std::string>& parameters,
+                               const std::string& program) {
   firmware::ParameterValues values = board.read_values();
   for (const std::string& file : parameters) host::put_file(values, file);
   board.write_values(values);
-  host::enable_and_wait(board, static_cast<std::uint8_t>((1u << drives.size()) - 1u));
+  const auto mask = static_cast<std::uint8_t>((1u << axes) - 1u);
+  host::enable_and_wait(board, mask);
   PathInProcess done;
-  done.machine = host::path_board(values, drives.size());
+  done.machine = host::path_board(values, axes);
   host::path_start(board, done.machine.scale, true);
   host::PathPlanOptions options;
   options.limits = done.machine.limits;
@@ -44,8 +42,18 @@ inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>&
   done.outcome =
       host::run_path(board, done.path, done.machine, true, recorder, [](const auto&) { return host::PathWish{}; });
   recorder.stop();
+  host::disable_and_wait(board, mask);
   done.capture = recorder.capture();
   return done;
+}
+
+/// Axes that are these drives, with the parameters of the files.
+inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>& drives,
+                                       const std::vector<std::string>& parameters, const std::string& program) {
+  std::vector<host::SimulatedDrive> simulated;
+  for (const sim::DriveDescription& drive : drives) simulated.push_back({drive});
+  host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{simulated, "", 1}));
+  return follow_on(board, drives.size(), parameters, program);
 }
 
 /// Contour error, um rms, of two axes with this drive. NaN if the path does not end.
