@@ -78,9 +78,14 @@ DriveState Drive::at(double x, double w) const {
   return state;
 }
 
-double Drive::with_effort_behind_screw(double effort, double w, double t_s) const {
+double Drive::behind_screw(double t_s) const {
   double outer = 0.0;
   for (const auto& part : effort_behind_screw) outer += part(t_s);
+  return outer;
+}
+
+double Drive::with_effort_behind_screw(double effort, double w, double t_s) const {
+  const double outer = behind_screw(t_s);
   if (w != 0.0) return effort + outer;
   return effort > 0.0 ? std::clamp(effort + outer, 0.0, effort) : std::clamp(effort + outer, effort, 0.0);
 }
@@ -134,7 +139,7 @@ template <Drive::Mechanics kMechanics, typename Contact>
   Contact contact(*this, motion, t_s, middle_x, motor);
   move_masses<kMechanics>(motion, with_loads(motor, w_before, t_s, middle_x), duration_s, 1, contact);
   // A force behind the screw stops the axis, and does not drive it back.
-  if (!effort_behind_screw.empty() && w_before * motion.w < 0.0) motion.w = 0.0;
+  if (!effort_behind_screw.empty() && w_before * motion.w < 0.0 && behind_screw(t_s) * motion.w > 0.0) motion.w = 0.0;
 }
 
 template <Drive::Mechanics kMechanics, typename Contact>

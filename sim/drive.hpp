@@ -182,6 +182,7 @@ class Drive {
   enum class Mechanics { one_mass, two_masses, bristles };
 
   void settle();
+  double behind_screw(double t_s) const;
   double with_effort_behind_screw(double effort, double w, double t_s) const;
   double tach_ripple_at(double x) const;
   double command_effort(double u_V, double w) const;
