@@ -30,6 +30,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.kinds = candidate.kinds;
   judged.before = before.combined;
   judged.after = after.combined;
+  judged.after_robust = after.robust;
   const SetError train_after = error_of(drive, training);
   judged.train_after = train_after.combined;
   judged.train_after_robust = train_after.robust;

@@ -27,8 +27,6 @@ constexpr double kTie = 0.05;
 /// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
 
-double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
-
 /// The best candidate with `size` effects. One that helps only at a bound of its range is returned only if there is no
 /// other.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
@@ -217,17 +215,17 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const JudgedCandidate* pair = best_of_size(diagnosis, 2);
   if (single != nullptr) single = simplest_near(single, diagnosis);
   const JudgedCandidate* triple = best_of_size(diagnosis, 3);
-  const auto gains_on = [](const JudgedCandidate* more, const JudgedCandidate* less) {
-    return more->after < (1.0 - kLeastFurtherGain) * less->after &&
-           more->train_after < (1.0 - kLeastFurtherGain) * less->train_after;
+  const auto gains = [](const JudgedCandidate& more, const JudgedCandidate& less) {
+    return error_of_both(more) < (1.0 - kLeastFurtherGain) * error_of_both(less);
   };
-  const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
-                           gains_on(pair, single) &&
-                           (explained_share(single->after, pair->after) >= kLeastFurtherShare ||
-                            (diagnosis.rough && need_each_other(*pair, diagnosis)));
+  const auto explains_enough = [](const JudgedCandidate& more, const JudgedCandidate& less) {
+    return explained_share(error_of_both(less), error_of_both(more)) >= kLeastFurtherShare;
+  };
+  const bool pair_stands =
+      pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) && gains(*pair, *single) &&
+      (explains_enough(*pair, *single) || (diagnosis.rough && need_each_other(*pair, diagnosis)));
   const bool triple_stands = triple != nullptr && pair != nullptr && earns_its_place(*triple, diagnosis) &&
-                             gains_on(triple, pair) &&
-                             explained_share(pair->after, triple->after) >= kLeastFurtherShare;
+                             gains(*triple, *pair) && explains_enough(*triple, *pair);
   const JudgedCandidate* chosen = triple_stands ? triple : pair_stands ? pair : single;
   const double before = diagnosis.told(diagnosis.before_validate);
 
