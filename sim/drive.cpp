@@ -75,6 +75,7 @@ DriveState Drive::at(double x, double w) const {
   state.x = state.load_x = state.turned_x = x;
   state.w = state.load_w = state.tach = w;
   state.friction_speed = std::abs(w);
+  if (w == 0.0) state.rest_s = HUGE_VAL;
   return state;
 }
 

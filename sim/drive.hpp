@@ -79,7 +79,7 @@ class Drive {
   /// Throws std::invalid_argument for a kind that the catalogue does not hold.
   explicit Drive(const DriveDescription& description);
 
-  /// A state with this travel and speed, and all hidden states at rest.
+  /// A state with this travel and speed, and all hidden states at rest. A drive that stands has stood for long.
   DriveState at(double x, double w) const;
 
   /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.

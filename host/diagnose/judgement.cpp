@@ -8,6 +8,7 @@
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/parallel.hpp"
 
 namespace host {
 
@@ -76,6 +77,11 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
                                             : error_of(sim::Drive(diagnosis.candidates.front().model), validation)) ||
       !moves || diagnosis.window_s < kWindow_s;
   diagnosis.base_error = diagnosis.rows.error_of(diagnosis.base);
+  if (diagnosis.judged_as_compared())
+    for_each_in_parallel(diagnosis.candidates.size(), [&](std::size_t k) {
+      JudgedCandidate& candidate = diagnosis.candidates[k];
+      candidate.error = diagnosis.rows.error_of(candidate.model);
+    });
   diagnosis.verdict = reach_verdict(given, diagnosis);
   assign_probabilities(diagnosis);
   settle_status(diagnosis);
