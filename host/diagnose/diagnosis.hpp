@@ -41,6 +41,7 @@ struct JudgedCandidate {
   double after_robust = 0.0, train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
   double confidence = 0.0;                              ///< probability that the improvement is not by chance, 0..1
   double luck = 1.0;         ///< p-value of the gain, as the best of all tried candidates, 0..1
+  double suffices = 1.0;     ///< p-value of the gain of the best candidate with one effect more, 0..1
   double probability = 0.0;  ///< probability of these effects given these records, 0..1
   sim::DriveDescription model;
   std::vector<std::string> on_bound = {};  ///< parameters that reached a bound of their range

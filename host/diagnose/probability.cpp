@@ -58,13 +58,15 @@ double probability_of_other(double unexplained, const Diagnosis& diagnosis, cons
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const double nothing = probability_complete(diagnosis, scale);
-  // A gain that may be chance is no evidence for a candidate or against the others.
+  // A gain that may be chance is no evidence for a candidate or against the others. A further effect whose gain is not
+  // chance shows that a candidate without it lacks something.
   std::vector<double> costs, weights;
   for (const JudgedCandidate& candidate : diagnosis.candidates) costs.push_back(cost_of(candidate, scale));
   const double least = costs.empty() ? 0.0 : *std::ranges::min_element(costs);
   double sum = 0.0;
   for (std::size_t k = 0; k < costs.size(); ++k) {
-    weights.push_back((1.0 - diagnosis.candidates[k].luck) * std::exp((least - costs[k]) / scale.tie));
+    weights.push_back((1.0 - diagnosis.candidates[k].luck) * diagnosis.candidates[k].suffices *
+                      std::exp((least - costs[k]) / scale.tie));
     sum += weights.back();
   }
   if (!(sum > 0.0)) {
