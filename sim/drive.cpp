@@ -75,7 +75,6 @@ DriveState Drive::at(double x, double w) const {
   state.x = state.load_x = state.turned_x = x;
   state.w = state.load_w = state.tach = w;
   state.friction_speed = std::abs(w);
-  if (w == 0.0) state.rest_s = HUGE_VAL;
   return state;
 }
 
@@ -297,6 +296,17 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
   state.w = w1;
   filter_tach(state, w0, duration_s);
   return effort;
+}
+
+double Drive::rest_to_hold(DriveState state, double effort, double t_s) const {
+  if (dwell_gain <= 0.0) return 0.0;
+  const RichContact contact(*this, state, t_s, state.x, effort);
+  const int side = effort >= 0.0 ? 0 : 1;
+  state.rest_s = 0.0;
+  const double fresh = contact.breakaway(side);
+  state.rest_s = HUGE_VAL;
+  const double part = (std::abs(effort) - fresh) / (contact.breakaway(side) - fresh);
+  return part <= 0.0 ? 0.0 : part >= 1.0 ? HUGE_VAL : -dwell_time_s * std::log1p(-part);
 }
 
 void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contact_effort, double duration_s,

@@ -79,7 +79,7 @@ class Drive {
   /// Throws std::invalid_argument for a kind that the catalogue does not hold.
   explicit Drive(const DriveDescription& description);
 
-  /// A state with this travel and speed, and all hidden states at rest. A drive that stands has stood for long.
+  /// A state with this travel and speed, and all hidden states at rest.
   DriveState at(double x, double w) const;
 
   /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.
@@ -90,6 +90,10 @@ class Drive {
   /// Lets the hidden states follow a known motion from the present state to (x1, w1). Returns the mean torque or force
   /// on the drive's inertia before friction is subtracted, Nm or N.
   double follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const;
+
+  /// Rest after which static friction holds the standing drive under this torque or force, Nm or N: 0 s if it does at
+  /// once, HUGE_VAL if only after a long rest or never.
+  double rest_to_hold(DriveState state, double effort, double t_s) const;
 
   /// Friction of a sliding state, signed like its speed; `effort`: transmitted torque or force, Nm or N.
   double sliding_effort(DriveState& state, double effort, double t_s) const;

@@ -177,22 +177,22 @@ TEST(DwellStiction, BreakawayGrowsWithTheRest) {
   const double gain = 0.4, tau_s = 2.0;
   const Drive drive(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", tau_s}}));
   for (const double rest_s : {0.1, 1.0, 4.0, 30.0}) {
-    DriveState stopped = drive.at(0.0, 0.0);
-    stopped.rest_s = 0.0;
-    const DriveState rested = run(drive, stopped, 0.3, static_cast<int>(rest_s / 0.01 + 0.5), 0.01);
+    const DriveState rested = run(drive, drive.at(0.0, 0.0), 0.3, static_cast<int>(rest_s / 0.01 + 0.5), 0.01);
     const double level = kStatic * (1.0 + gain * (1.0 - std::exp(-rest_s / tau_s)));
     expect_breakaway(drive, rested, level);
     expect_breakaway(drive, rested, -level);
   }
 }
 
-TEST(DwellStiction, ADriveOfUnknownPastHasStoodForLong) {
-  const double gain = 0.4;
-  const Drive drive(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", 2.0}}));
-  expect_breakaway(drive, drive.at(0.0, 0.0), kStatic * (1.0 + gain));
-  DriveState followed = drive.at(0.0, 0.0);
-  for (int k = 0; k < 10; ++k) drive.follow(followed, 0.0, 0.0, 0.0, 0.001 * k, 0.001);
-  expect_breakaway(drive, followed, -kStatic * (1.0 + gain));
+TEST(DwellStiction, HoldsATorqueAfterTheRestThatItNeeds) {
+  const double gain = 0.4, tau_s = 2.0;
+  const Drive drive(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", tau_s}}));
+  for (const double sign : {1.0, -1.0}) {
+    const auto rest_to_hold = [&](double torque) { return drive.rest_to_hold(drive.at(0.0, 0.0), sign * torque, 0.0); };
+    EXPECT_EQ(rest_to_hold(0.99 * kStatic), 0.0);
+    EXPECT_NEAR(rest_to_hold(kStatic * (1.0 + gain * (1.0 - std::exp(-0.7 / tau_s)))), 0.7, 1e-9);
+    EXPECT_EQ(rest_to_hold(1.41 * kStatic), HUGE_VAL);
+  }
 }
 
 TEST(DwellStiction, FollowingAMotionSeesThatTheRestIsForgottenBesideADrag) {
