@@ -310,6 +310,17 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
   return effort;
 }
 
+double Drive::rest_to_hold(DriveState state, double effort, double t_s) const {
+  if (dwell_gain <= 0.0) return 0.0;
+  const RichContact contact(*this, state, t_s, state.x, effort);
+  const int side = effort >= 0.0 ? 0 : 1;
+  state.rest_s = 0.0;
+  const double fresh = contact.breakaway(side);
+  state.rest_s = HUGE_VAL;
+  const double part = (std::abs(effort) - fresh) / (contact.breakaway(side) - fresh);
+  return part <= 0.0 ? 0.0 : part >= 1.0 ? HUGE_VAL : -dwell_time_s * std::log1p(-part);
+}
+
 void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contact_effort, double duration_s,
                         const RichContact& contact) const {
   if (w0 == 0.0 && w1 == 0.0) {

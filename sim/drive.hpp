@@ -91,6 +91,10 @@ class Drive {
   /// on the drive's inertia before friction is subtracted, Nm or N.
   double follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const;
 
+  /// Rest after which static friction holds the standing drive under this torque or force, Nm or N: 0 s if it does at
+  /// once, HUGE_VAL if only after a long rest or never.
+  double rest_to_hold(DriveState state, double effort, double t_s) const;
+
   /// Friction of a sliding state, signed like its speed; `effort`: transmitted torque or force, Nm or N.
   double sliding_effort(DriveState& state, double effort, double t_s) const;
 

@@ -64,11 +64,11 @@ void print(const host::Diagnosis& diagnosis) {
   for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
     const host::JudgedCandidate& candidate = diagnosis.candidates[k];
     fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}% {:9.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
-               diagnosis.told_of_training(candidate.train_after), diagnosis.told(candidate.after),
+               host::Diagnosis::printed(candidate).train, host::Diagnosis::printed(candidate).validate,
                100.0 * candidate.probability, 100.0 * candidate.confidence);
   }
   fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", "nothing is missing",
-             diagnosis.told_of_training(diagnosis.before_train), diagnosis.told(diagnosis.before_validate),
+             diagnosis.printed_base().train, diagnosis.printed_base().validate,
              100.0 * verdict.probability_nothing);
   fmt::print("  {:<50} {:>9} {:>9} {:10.1f}%\n", "something else", "", "", 100.0 * verdict.probability_other);
 }

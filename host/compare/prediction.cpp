@@ -52,10 +52,32 @@ class Restarts {
 
   void begin_at(std::size_t row, std::size_t index) {
     state_ = drive_.at(followed_travel(row), motion_.w[row]);
+    if (row == 0) state_.rest_s = rest_before();
     row_ = row;
     next_kept_ = index;
     begun_ = true;
     keep();
+  }
+
+  /// Least time for which the drive has stood before its record begins: under the torque or force of its first rest, a
+  /// drive that had just stopped would have moved.
+  double rest_before() const {
+    // A motion that begins within the last rows of a rest does not show yet.
+    constexpr double kUnseen_s = 0.03;
+    if (drive_.dwell_gain <= 0.0) return 0.0;
+    std::size_t end = 0;
+    while (end < motion_.standing.size() && motion_.standing[end]) ++end;
+    const auto unseen = static_cast<std::size_t>(std::ceil(kUnseen_s / prepared_.period_s));
+    sim::DriveState standing = state_;
+    double least_s = 0.0;
+    for (std::size_t row = 0; row + unseen < end; ++row) {
+      const double t_s = prepared_.record->t_s[row];
+      const double effort = drive_.follow(standing, prepared_.u_V[row], followed_travel(row + 1), motion_.w[row + 1],
+                                          t_s, prepared_.period_s);
+      const double passed_s = static_cast<double>(row + 1) * prepared_.period_s;
+      least_s = std::max(least_s, drive_.rest_to_hold(standing, effort, t_s) - passed_s);
+    }
+    return least_s;
   }
 
   /// The corrected readings of a window depend on rows after the start of the following windows. So the states at these

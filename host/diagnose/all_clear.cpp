@@ -152,10 +152,11 @@ std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis) {
 }
 
 std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis) {
-  for (const auto& [set, name, error] : {std::tuple(&diagnosis.training, "training", diagnosis.before_train),
-                                         std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate)}) {
+  const PrintedError printed = diagnosis.printed_base();
+  for (const auto& [set, name, error, told] :
+       {std::tuple(&diagnosis.training, "training", diagnosis.before_train, printed.train),
+        std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate, printed.validate)}) {
     if (is_small(diagnosis.base, *set)) continue;
-    const double told = set == &diagnosis.validation ? diagnosis.told(error) : diagnosis.told_of_training(error);
     // With few windows, a single bad window can cause such an error.
     const auto windows = static_cast<double>(set->used_windows());
     if (error < kSmall * (1.0 + 1.0 / std::sqrt(windows)))
@@ -182,7 +183,7 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis) {
   return Objection{Status::insufficient_data,
                    fmt::format("The residual is noise ({:.2f} times the noise floor), but these motions would not show "
                                "the following effects at their usual size: {}",
-                               diagnosis.told(diagnosis.before_validate), fmt::join(hidden, ", ")),
+                               printed.validate, fmt::join(hidden, ", ")),
                    ways.front() + "."};
 }
 

@@ -9,8 +9,6 @@
 
 namespace host {
 
-/// Largest group of rivals: one further measurement can separate this many.
-inline constexpr std::size_t kLargestGroup = 4;
 /// Whether a list of kinds contains all of these.
 bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds);
 /// Probability that all these effects are present: the sum over all candidates that contain them.

@@ -38,12 +38,19 @@ struct JudgedCandidate {
   double before = 0.0;  ///< combined error
   double after = 0.0;
   double train_after = 0.0;
-  double train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
-  double confidence = 0.0;          ///< probability that the improvement is not by chance, 0..1
-  double luck = 1.0;                ///< p-value of the gain, as the best of all tried candidates, 0..1
-  double probability = 0.0;         ///< probability of these effects given these records, 0..1
+  double after_robust = 0.0, train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
+  double confidence = 0.0;                              ///< probability that the improvement is not by chance, 0..1
+  double luck = 1.0;         ///< p-value of the gain, as the best of all tried candidates, 0..1
+  double suffices = 1.0;     ///< p-value of the gain of the best candidate with one effect more, 0..1
+  double probability = 0.0;  ///< probability of these effects given these records, 0..1
   sim::DriveDescription model;
   std::vector<std::string> on_bound = {};  ///< parameters that reached a bound of their range
+  std::optional<ErrorOnSets> error = {};   ///< as compare prints it; empty if another measure decided
+};
+
+/// Combined errors on both sets as they are printed.
+struct PrintedError {
+  double train = 0.0, validate = 0.0;
 };
 
 /// Effects that are certain, and the error before and after they are added, as a share of the signal on held-back
@@ -107,15 +114,15 @@ struct Diagnosis : PreparedSets {
   /// Whether candidates were compared by the same error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
 
-  /// Converts a combined error on held-back records to the scale of `base_error`. Candidates are compared over the
-  /// noise floors of the best of them, but the error of a single model is reported over its own noise floors.
-  double told(double judged) const {
-    const double now = base_error.validate.combined;
-    return judged_as_compared() && before_validate > 0.0 && now > 0.0 ? judged * now / before_validate : judged;
+  /// Candidates are judged over the noise floors of the best of them, but every model is printed with the error that
+  /// compare prints, over its own noise floors, if this measure decided.
+  static PrintedError printed(const JudgedCandidate& candidate) {
+    if (!candidate.error) return {candidate.train_after, candidate.after};
+    return {candidate.error->train.combined, candidate.error->validate.combined};
   }
-  double told_of_training(double judged) const {
-    const double now = base_error.train.combined;
-    return judged_as_compared() && before_train > 0.0 && now > 0.0 ? judged * now / before_train : judged;
+  PrintedError printed_base() const {
+    if (!judged_as_compared()) return {before_train, before_validate};
+    return {base_error.train.combined, base_error.validate.combined};
   }
 };
 

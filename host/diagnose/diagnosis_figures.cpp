@@ -289,7 +289,7 @@ void add_candidates(Report& report, const Diagnosis& diagnosis) {
                                                                                                      : rest;
     if (&chart == &others && others.rows.size() == kMostOthers) continue;
     chart.rows.push_back({fmt::format("{}", fmt::join(titles_of(candidate.kinds), " + ")),
-                          {diagnosis.told(candidate.before), diagnosis.told(candidate.after)},
+                          {diagnosis.printed_base().validate, Diagnosis::printed(candidate).validate},
                           fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
   }
   if (rest.rows.size() == 1) rest.title = "One tried effect makes no difference";

@@ -80,7 +80,6 @@ nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kin
   return document;
 }
 
-/// Candidates are compared over the same noise floors. Their errors are scaled to that of the base.
 nlohmann::json candidate_json(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const std::string& kind : candidate.kinds)
@@ -88,8 +87,8 @@ nlohmann::json candidate_json(const JudgedCandidate& candidate, const Diagnosis&
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   return {{"kinds", candidate.kinds},
           {"before", diagnosis.judged_as_compared() ? diagnosis.base_error.validate.combined : candidate.before},
-          {"after", diagnosis.told(candidate.after)},
-          {"train_after", diagnosis.told_of_training(candidate.train_after)},
+          {"after", Diagnosis::printed(candidate).validate},
+          {"train_after", Diagnosis::printed(candidate).train},
           {"parameters", candidate.kinds.size() == 1 ? parameters.begin().value() : parameters},
           {"confidence", candidate.confidence},
           {"luck", candidate.luck},

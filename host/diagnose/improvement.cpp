@@ -51,9 +51,9 @@ const JudgedCandidate* halves_the_rest(const Diagnosis& diagnosis) {
 }
 
 Rung rung_of(const Diagnosis& diagnosis, const JudgedCandidate& candidate) {
-  const ErrorOnSets error = diagnosis.rows.error_of(candidate.model);
-  if (diagnosis.judged_as_compared()) return {candidate.kinds, error.train.combined, error.validate.combined, error};
-  return {candidate.kinds, candidate.train_after, candidate.after, error};
+  const PrintedError printed = Diagnosis::printed(candidate);
+  return {candidate.kinds, printed.train, printed.validate,
+          candidate.error ? *candidate.error : diagnosis.rows.error_of(candidate.model)};
 }
 
 /// The steps of the regression, which added effects one by one against one noise floor until none was significant.

@@ -8,6 +8,7 @@
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/parallel.hpp"
 
 namespace host {
 
@@ -21,16 +22,18 @@ std::size_t windows_in(double span_s, const RecordSet& set) {
 
 }  // namespace
 
-JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
-                                const SetError& before, std::size_t tried) {
+namespace {
+
+/// The same from the errors on both sets.
+JudgedCandidate judged_by(const Candidate& candidate, const SetError& train_after, const SetError& after,
+                          const RecordSet& training, const RecordSet& validation, const SetError& before,
+                          std::size_t tried) {
   constexpr double kBlock_s = 1.0;  // of the bootstrap
-  const sim::Drive drive(candidate.model);
-  const SetError after = error_of(drive, validation);
   JudgedCandidate judged;
   judged.kinds = candidate.kinds;
   judged.before = before.combined;
   judged.after = after.combined;
-  const SetError train_after = error_of(drive, training);
+  judged.after_robust = after.robust;
   judged.train_after = train_after.combined;
   judged.train_after_robust = train_after.robust;
   judged.confidence =
@@ -40,6 +43,54 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.model = candidate.model;
   judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
   return judged;
+}
+
+/// The candidates of all steps. Of several fits of the same effects, only the best is kept.
+std::vector<const Candidate*> all_of(const Findings& findings) {
+  std::vector<const Candidate*> all;
+  for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs, &findings.triples})
+    for (const Candidate& candidate : *list) {
+      const auto same = std::ranges::find_if(
+          all, [&](const Candidate* other) { return std::ranges::is_permutation(other->kinds, candidate.kinds); });
+      if (same == all.end())
+        all.push_back(&candidate);
+      else if (candidate.left < (*same)->left)
+        *same = &candidate;
+    }
+  return all;
+}
+
+void judge_candidates(Diagnosis& diagnosis, const Findings& findings, const SetError& before) {
+  const RecordSet &training = diagnosis.training, &validation = diagnosis.validation;
+  const std::vector<const Candidate*> all = all_of(findings);
+  diagnosis.tried = all.size();
+  diagnosis.candidates.resize(all.size());
+  std::vector<SetError> after(all.size());
+  for_each_in_parallel(all.size(), [&](std::size_t k) {
+    const sim::Drive drive(all[k]->model);
+    after[k] = error_of(drive, validation);
+    diagnosis.candidates[k] =
+        judged_by(*all[k], error_of(drive, training), after[k], training, validation, before, all.size());
+    if (diagnosis.judged_as_compared()) diagnosis.candidates[k].error = diagnosis.rows.error_of(all[k]->model);
+  });
+  for_each_in_parallel(all.size(), [&](std::size_t k) {
+    for (std::size_t more = 0; more < all.size(); ++more)
+      if (all[more]->kinds.size() == all[k]->kinds.size() + 1 && holds_all(all[more]->kinds, all[k]->kinds))
+        diagnosis.candidates[k].suffices =
+            std::min(diagnosis.candidates[k].suffices,
+                     probability_of_luck(after[k], after[more], all.size(), windows_in(kLuckBlock_s, validation),
+                                         validation.common_square));
+  });
+  std::ranges::stable_sort(diagnosis.candidates, {}, error_of_both);
+}
+
+}  // namespace
+
+JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
+                                const SetError& before, std::size_t tried) {
+  const sim::Drive drive(candidate.model);
+  return judged_by(candidate, error_of(drive, training), error_of(drive, validation), training, validation, before,
+                   tried);
 }
 
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings) {
@@ -55,11 +106,7 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   renew_floors(training, reference);
   renew_floors(validation, reference);
   const SetError before = error_of(sim::Drive(diagnosis.base), validation);
-  diagnosis.tried = findings.singles.size() + findings.pairs.size() + findings.triples.size();
-  for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs, &findings.triples})
-    for (const Candidate& candidate : *list)
-      diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before, diagnosis.tried));
-  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
+  judge_candidates(diagnosis, findings, before);
   const SetError before_train = error_of(sim::Drive(diagnosis.base), training);
   diagnosis.before_train = before_train.combined;
   diagnosis.before_train_robust = before_train.robust;

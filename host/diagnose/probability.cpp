@@ -11,11 +11,10 @@ namespace host {
 
 namespace {
 
-/// Log of the error, with both sets weighted equally, plus the penalty for a candidate's complexity. Errors are bounded
-/// below, because an error below the noise floor shows only that the noise floor is uncertain.
+/// Log of the error plus the penalty for a candidate's complexity. The error is bounded below, because an error below
+/// the noise floor shows only that the noise floor is uncertain.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
-  const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
-  return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
+  return std::log(std::max(error_of_both(candidate), 0.9 * kComplete)) +
          scale.further * static_cast<double>(candidate.kinds.size() - 1) +
          scale.parameter * static_cast<double>(parameters_of(candidate)) +
          scale.bound * static_cast<double>(candidate.on_bound.size());
@@ -59,13 +58,15 @@ double probability_of_other(double unexplained, const Diagnosis& diagnosis, cons
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const double nothing = probability_complete(diagnosis, scale);
-  // A gain that may be chance is no evidence for a candidate or against the others.
+  // A gain that may be chance is no evidence for a candidate or against the others. A further effect whose gain is not
+  // chance shows that a candidate without it lacks something.
   std::vector<double> costs, weights;
   for (const JudgedCandidate& candidate : diagnosis.candidates) costs.push_back(cost_of(candidate, scale));
   const double least = costs.empty() ? 0.0 : *std::ranges::min_element(costs);
   double sum = 0.0;
   for (std::size_t k = 0; k < costs.size(); ++k) {
-    weights.push_back((1.0 - diagnosis.candidates[k].luck) * std::exp((least - costs[k]) / scale.tie));
+    weights.push_back((1.0 - diagnosis.candidates[k].luck) * diagnosis.candidates[k].suffices *
+                      std::exp((least - costs[k]) / scale.tie));
     sum += weights.back();
   }
   if (!(sum > 0.0)) {

@@ -27,8 +27,6 @@ constexpr double kTie = 0.05;
 /// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
 
-double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
-
 /// The best candidate with `size` effects. One that helps only at a bound of its range is returned only if there is no
 /// other.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
@@ -124,12 +122,14 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
     const sim::EffectEntry& last = candidate.model.effects.back();
     if (last.kind != candidate.kinds.back() || !last.has("period")) continue;
     double train = diagnosis.before_train, validate = diagnosis.before_validate;
+    PrintedError printed = diagnosis.printed_base();
     if (candidate.kinds.size() == 2) {
       const auto first =
           std::ranges::find(diagnosis.candidates, std::vector{candidate.kinds.front()}, &JudgedCandidate::kinds);
       if (first == diagnosis.candidates.end()) continue;
       train = first->train_after;
       validate = first->after;
+      printed = Diagnosis::printed(*first);
     }
     if (candidate.train_after > (1.0 - kLeastGain) * train || candidate.after < validate) continue;
     const double period_mm = kind == sim::DriveKind::rotary ? last.at("period") : 1e3 * last.at("period");
@@ -137,15 +137,9 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
         " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
         "noise floor, but not on validation data: its phase differs between records, as after a new homing, so it is "
         "not claimed.",
-        period_mm, last.kind, diagnosis.told_of_training(train), diagnosis.told_of_training(candidate.train_after));
+        period_mm, last.kind, printed.train, Diagnosis::printed(candidate).train);
   }
   return {};
-}
-
-/// Combined error of a candidate on held-back records, as compare prints it if that measure decided.
-double told_of(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  if (!diagnosis.judged_as_compared() || diagnosis.rows.validate.empty()) return candidate.after;
-  return diagnosis.rows.error_of(candidate.model).validate.combined;
 }
 
 double validation_s(const Diagnosis& diagnosis) {
@@ -156,7 +150,7 @@ double validation_s(const Diagnosis& diagnosis) {
 std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
   const std::string what =
       fmt::format("; the best candidate, {}, leaves {:.2f} (training: {:.2f})", fmt::join(closest.kinds, " + "),
-                  diagnosis.told(closest.after), diagnosis.told_of_training(closest.train_after));
+                  Diagnosis::printed(closest).validate, Diagnosis::printed(closest).train);
   switch (reservation_about(closest, diagnosis)) {
     case Reservation::none:
       return {};
@@ -217,19 +211,19 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const JudgedCandidate* pair = best_of_size(diagnosis, 2);
   if (single != nullptr) single = simplest_near(single, diagnosis);
   const JudgedCandidate* triple = best_of_size(diagnosis, 3);
-  const auto gains_on = [](const JudgedCandidate* more, const JudgedCandidate* less) {
-    return more->after < (1.0 - kLeastFurtherGain) * less->after &&
-           more->train_after < (1.0 - kLeastFurtherGain) * less->train_after;
+  const auto gains = [](const JudgedCandidate& more, const JudgedCandidate& less) {
+    return error_of_both(more) < (1.0 - kLeastFurtherGain) * error_of_both(less);
+  };
+  const auto explains_enough = [](const JudgedCandidate& more, const JudgedCandidate& less) {
+    return explained_share(error_of_both(less), error_of_both(more)) >= kLeastFurtherShare;
   };
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
-                           gains_on(pair, single) &&
-                           (explained_share(single->after, pair->after) >= kLeastFurtherShare ||
-                            (diagnosis.rough && need_each_other(*pair, diagnosis)));
+                           gains(*pair, *single) &&
+                           (explains_enough(*pair, *single) || (diagnosis.rough && need_each_other(*pair, diagnosis)));
   const bool triple_stands = triple != nullptr && pair != nullptr && earns_its_place(*triple, diagnosis) &&
-                             gains_on(triple, pair) &&
-                             explained_share(pair->after, triple->after) >= kLeastFurtherShare;
+                             gains(*triple, *pair) && explains_enough(*triple, *pair);
   const JudgedCandidate* chosen = triple_stands ? triple : pair_stands ? pair : single;
-  const double before = diagnosis.told(diagnosis.before_validate);
+  const double before = diagnosis.printed_base().validate;
 
   if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
     if (const std::optional<Objection> objection = objection_to_claim(diagnosis)) {
@@ -264,7 +258,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of the "
         "explainable error. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
-        told_of(*chosen, diagnosis), 100.0 * explained_share(diagnosis.before_validate, chosen->after), first.shows);
+        Diagnosis::printed(*chosen).validate, 100.0 * explained_share(diagnosis.before_validate, chosen->after),
+        first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)

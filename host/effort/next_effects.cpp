@@ -9,7 +9,6 @@
 namespace host {
 
 std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
-  constexpr std::size_t kLargestGroup = 4;  // a larger group does not help the user
   std::vector<std::string> group;
   probability = 0.0;
   for (const NextEffect& effect : next.effects) {

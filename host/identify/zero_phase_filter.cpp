@@ -11,7 +11,7 @@ namespace host {
 using std::numbers::pi;
 
 ZeroPhaseLowPass ZeroPhaseLowPass::butterworth(double cutoff_Hz, double sample_rate_Hz) {
-  std::array<PolePair, 2> poles;
+  std::array<PolePair, kButterworthSections> poles;
   for (std::size_t k = 0; k < poles.size(); ++k) {
     const double angle = pi * (2.0 * static_cast<double>(k) + 1.0) / (4.0 * static_cast<double>(poles.size()));
     poles[k] = {-std::sin(angle), std::cos(angle)};
@@ -21,7 +21,7 @@ ZeroPhaseLowPass ZeroPhaseLowPass::butterworth(double cutoff_Hz, double sample_r
 
 ZeroPhaseLowPass ZeroPhaseLowPass::chebyshev(double cutoff_Hz, double sample_rate_Hz) {
   constexpr double kRipple_dB = 0.05;
-  std::array<PolePair, 4> poles;
+  std::array<PolePair, kChebyshevSections> poles;
   const double order = 2.0 * static_cast<double>(poles.size());
   const double mu = std::asinh(1.0 / std::sqrt(std::pow(10.0, kRipple_dB / 10.0) - 1.0)) / order;
   for (std::size_t k = 0; k < poles.size(); ++k) {
@@ -47,16 +47,32 @@ ZeroPhaseLowPass::ZeroPhaseLowPass(std::span<const PolePair> poles, double cutof
   extension_ = static_cast<std::size_t>(std::ceil(periods * sample_rate_Hz / cutoff_Hz));
 }
 
-void ZeroPhaseLowPass::run_once(std::vector<double>& signal) const {
-  for (const Section& s : sections_) {  // transposed direct form II, started in the steady state of the first sample
-    double first = signal.front() * (1.0 - s.b0), second = signal.front() * (s.b2 - s.a2);
-    for (double& sample : signal) {
-      const double out = s.b0 * sample + first;
-      first = s.b1 * sample - s.a1 * out + second;
-      second = s.b2 * sample - s.a2 * out;
+template <std::size_t count>
+void ZeroPhaseLowPass::cascade(std::vector<double>& signal) const {
+  // Transposed direct form II, started in the steady state of the first sample. Every sample passes through all
+  // sections before the next, because the processor overlaps the sections' recurrences.
+  std::array<Section, count> sections;
+  std::array<double, count> first, second;
+  for (std::size_t k = 0; k < count; ++k) {
+    sections[k] = sections_[k];
+    first[k] = signal.front() * (1.0 - sections[k].b0);
+    second[k] = signal.front() * (sections[k].b2 - sections[k].a2);
+  }
+  for (double& sample : signal)
+    for (std::size_t k = 0; k < count; ++k) {
+      const Section& s = sections[k];
+      const double out = s.b0 * sample + first[k];
+      first[k] = s.b1 * sample - s.a1 * out + second[k];
+      second[k] = s.b2 * sample - s.a2 * out;
       sample = out;
     }
-  }
+}
+
+void ZeroPhaseLowPass::run_once(std::vector<double>& signal) const {
+  if (sections_.size() == kButterworthSections)
+    cascade<kButterworthSections>(signal);
+  else
+    cascade<kChebyshevSections>(signal);
 }
 
 std::vector<double> ZeroPhaseLowPass::operator()(std::span<const double> signal) const {

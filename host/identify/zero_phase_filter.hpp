@@ -1,6 +1,7 @@
 // Low-pass filters without delay, applied forward and backward.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ class ZeroPhaseLowPass {
   };
   ZeroPhaseLowPass(std::span<const PolePair> poles, double cutoff_Hz, double sample_rate_Hz);
   void run_once(std::vector<double>& signal) const;
+  template <std::size_t count>
+  void cascade(std::vector<double>& signal) const;
+
+  static constexpr std::size_t kButterworthSections = 2, kChebyshevSections = 4;  ///< of second order
 
   std::vector<Section> sections_;
   std::size_t extension_;

@@ -11,6 +11,8 @@ namespace host {
 /// Least probability that all named effects are present. A wrong name sends a mechanic to the wrong part, which costs
 /// some twenty times as much as another record.
 inline constexpr double kClaimed = 0.95;
+/// Largest group of rivals: one further measurement can separate this many.
+inline constexpr std::size_t kLargestGroup = 4;
 /// Least part of the remaining squared error on held-back records that the first named effect must explain. With less,
 /// the RMS error would fall by less than 5 %, which is not noticeable on the machine.
 inline constexpr double kWorthNaming = 0.1;

@@ -316,9 +316,11 @@ bool excludes(const string& a, const string& b) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 5) return std::fprintf(stderr, "made_machines SEED COUNT EFFECTS DIRECTORY\n"), 2;
+  if (argc != 5 && argc != 6)
+    return std::fprintf(stderr, "made_machines SEED COUNT EFFECTS DIRECTORY [FIRST CASE]\n"), 2;
   const std::uint64_t seed = std::stoull(argv[1]);
-  for (int n = 0; n < std::stoi(argv[2]); ++n) {
+  const int first_case = argc == 6 ? std::stoi(argv[5]) : 0;
+  for (int n = first_case; n < first_case + std::stoi(argv[2]); ++n) {
     Random r{std::mt19937_64(seed * 1000 + static_cast<std::uint64_t>(n))};
     Drive d{};
     d.amplifier = r.between(6.2, 7.8);

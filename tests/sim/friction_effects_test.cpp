@@ -184,6 +184,17 @@ TEST(DwellStiction, BreakawayGrowsWithTheRest) {
   }
 }
 
+TEST(DwellStiction, HoldsATorqueAfterTheRestThatItNeeds) {
+  const double gain = 0.4, tau_s = 2.0;
+  const Drive drive(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", tau_s}}));
+  for (const double sign : {1.0, -1.0}) {
+    const auto rest_to_hold = [&](double torque) { return drive.rest_to_hold(drive.at(0.0, 0.0), sign * torque, 0.0); };
+    EXPECT_EQ(rest_to_hold(0.99 * kStatic), 0.0);
+    EXPECT_NEAR(rest_to_hold(kStatic * (1.0 + gain * (1.0 - std::exp(-0.7 / tau_s)))), 0.7, 1e-9);
+    EXPECT_EQ(rest_to_hold(1.41 * kStatic), HUGE_VAL);
+  }
+}
+
 TEST(DwellStiction, FollowingAMotionSeesThatTheRestIsForgottenBesideADrag) {
   // During creep after a rest, friction is at the level without the increase by the rest, because an undetected short
   // stop has ended this increase. An additional drag of the same size must not be mistaken for the increase.

@@ -1,6 +1,9 @@
 // The error of one model on one record is the same in every command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+
 #include "host/compare/comparison_figures.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
@@ -57,6 +60,14 @@ TEST_P(OneMeasure, CommandsAgreeToTheDigit) {
     EXPECT_EQ(diagnosed["combined"]["after"][set], diagnosed["after"][set]["combined"]);
     EXPECT_EQ(improved["ladder"].front()[set], diagnosed["before"][set]["combined"]);
   }
+  if (diagnosis.judged_as_compared())
+    for (const host::JudgedCandidate& candidate :
+         std::span(diagnosis.candidates).first(std::min<std::size_t>(1, diagnosis.candidates.size()))) {
+      sim::DriveDescription model = candidate.model;
+      model.data = asked.model.data;
+      EXPECT_EQ(host::Diagnosis::printed(candidate).train, compared(model, asked.train)["combined"]);
+      EXPECT_EQ(host::Diagnosis::printed(candidate).validate, compared(model, asked.validate)["combined"]);
+    }
   const double given = improved["error"]["given"]["validate"]["combined"];
   EXPECT_LE(improved["error"]["after"]["validate"]["combined"].get<double>(), given * (1.0 + 1e-9));
 }

@@ -15,15 +15,16 @@ AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
 # alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset
 # with friction that no motion separates from a constant torque; a constant torque beside nonlinear viscous friction,
-# which a base fitted to the motion without it takes over
-CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (910, 2, 5))
+# which a base fitted to the motion without it takes over; static friction that grows with rest, whose late breakaways
+# outweigh every other window in a mean square, beside nonlinear viscous friction and beside a constant torque
+CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (910, 2, 5), (601, 2, 2), (910, 2, 10))
 # a gap with friction on either side beside friction's memory: the gap alone is added
 SHARED_FRICTION = (601, 2, 9)
 
 
 def made(seed: int, effects: int, number: int, folder: str) -> "tuple[Path, list, dict]":
     """The folder of one case, its records as arguments of a command, and its truth."""
-    subprocess.run([MADE_MACHINES, str(seed), str(number + 1), str(effects), folder], check=True,
+    subprocess.run([MADE_MACHINES, str(seed), "1", str(effects), folder, str(number)], check=True,
                    stdout=subprocess.DEVNULL)
     case = Path(folder) / f"case-{number:02d}"
     training = [case / f"train-{name}.csv" for name in ("jog", "steps", "sweep")]
