@@ -51,7 +51,7 @@ awk -v root="$root" -v work="$work" -v which="$which" '
 
 cat >"$work/try.sh" <<'END'
 folder=$1
-if ! $CXX $FLAGS -include "$WORK/common.hpp" -I"$folder" -I"$ROOT" "$(cat "$folder/test")" $(cat "$folder/too") "$LIBRARY" -lgtest_main -lgtest -pthread \
+if ! $CXX $FLAGS -include "$WORK/common.hpp" -I"$folder" -I"$ROOT" "$(cat "$folder/test")" $(cat "$folder/too") "$LIBRARY" -lgtest_main -lgtest -lrapidcheck -pthread \
   -o "$folder/program" 2>"$folder/errors"; then
   echo "does not compile: $(cat "$folder/what")"
   head -5 "$folder/errors"
