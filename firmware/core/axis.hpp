@@ -184,12 +184,12 @@ class Axis {
   /// Stops a jog in time, so that it ends within these counts; call it before each step(). Moves are planned to end
   /// inside.
   constexpr void keep_inside(std::int64_t min_counts, std::int64_t max_counts) {
-    if (generator_.is_planned()) return;
-    const Increment velocity = generator_.run_out_velocity();
+    if (generator_.mode() != MotionMode::jog) return;
+    const Increment velocity = generator_.jog_profile().run_out_velocity();
     if (velocity == 0) return;
     const std::int64_t here = preview_.position().counts;
     const std::int64_t room = velocity > 0 ? max_counts - here : here - min_counts;
-    const std::int32_t delay = generator_.run_out_samples() + kPreviewSamples;
+    const std::int32_t delay = generator_.jog_profile().run_out_samples() + kPreviewSamples;
     if (room <= stopping_.counts(velocity, delay)) generator_.jog(0);
   }
 
@@ -197,7 +197,7 @@ class Axis {
   constexpr std::int64_t farthest_stop() const { return farthest_stop_; }
 
   /// Slows down to standstill within the limits.
-  constexpr void stop() { generator_.jog(0); }
+  constexpr void stop() { generator_.stop(); }
 
   /// All further stops, until the loop opens, use the fault deceleration.
   constexpr void brake_hard() { generator_.brake_hard(); }

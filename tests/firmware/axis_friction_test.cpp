@@ -178,7 +178,8 @@ ContourErrors run_circle(bool friction_feedforward, bool disturbance_cancellatio
 
   ContourErrors errors;
   CountPosition arc{};
-  for (int settling = 300; settling > 0; settling -= along_path.at_rest() ? 1 : 0) {
+  const int settling = 300;
+  for (std::int64_t k = 0; k < planned.plan.samples() + settling; ++k) {
     const CountPosition last = arc;
     arc.advance(along_path.next());
     const auto arc_mm = [](const CountPosition& p) {
