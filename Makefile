@@ -263,8 +263,8 @@ commission-usb: ## axistool commission over Linux' own USB stack, in an emulated
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
 	$(NEED) build test
 	$(call configure,$(BUILD))
-	ninja -C $(BUILD) -j $(JOBS) axis_parts
-	tests/hal/mutants.sh . $(BUILD)/tests/libaxis_parts.a c++ all
+	ninja -C $(BUILD) -j $(JOBS) axis_parts axis_sim
+	tests/hal/mutants.sh . "$(BUILD)/tests/libaxis_parts.a $(BUILD)/sim/libaxis_sim.a" c++ all
 
 .PHONY: format
 format: ## Format all sources in place

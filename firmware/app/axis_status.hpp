@@ -15,7 +15,7 @@ AxisStatus axis_status(const Axis& axis, bool fitted, bool pitch_on) {
   status.counts_high = static_cast<std::int32_t>(seen.encoder_counts >> 32);
   status.state = static_cast<std::uint8_t>(axis.state());
   status.fault = static_cast<std::uint8_t>(axis.fault());
-  status.second_fault = static_cast<std::uint8_t>(axis.second_fault());
+  status.second_fault = static_cast<std::uint8_t>(axis.latched().second());
   const auto limiting = axis.limiting();
   status.flags =
       static_cast<std::uint8_t>((fitted ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |

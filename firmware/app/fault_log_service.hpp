@@ -75,7 +75,7 @@ class FaultLogService {
       is_taken_[index] = axis.state() == SupervisorState::fault;
       const auto& last = axis.capture().last();
       entry.fault = static_cast<std::uint8_t>(axis.fault());
-      entry.second_fault = static_cast<std::uint8_t>(axis.second_fault());
+      entry.second_fault = static_cast<std::uint8_t>(axis.latched().second());
       entry.activity = static_cast<std::uint8_t>(axis.latched().activity());
       entry.homed = axis.latched().was_homed() ? 1 : 0;
       const std::int64_t counts = last.estimate.anchor_counts;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <numeric>
+#include <optional>
 
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/typed_keys.hpp"
@@ -17,6 +18,7 @@
 #include "host/exit_codes.hpp"
 #include "host/path/path_extents.hpp"
 #include "host/record/read_record.hpp"
+#include "host/stop_notice.hpp"
 
 namespace axistool {
 
@@ -113,10 +115,15 @@ class Operator {
   bool goes_on(const host::PathProgress& progress, bool pressed) {
     if (progress.waits != announced_ && progress.waits != nullptr)
       fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
-                 arguments_.passes_stops ? ", and continues at once" : "; Enter continues, Ctrl-C ends it");
+                 arguments_.passes_stops ? ", and continues at once"
+                                         : "; Enter continues, here or in the workbench, Ctrl-C ends it");
     const bool is_new = progress.waits != announced_;
     announced_ = progress.waits;
-    if (progress.waits == nullptr || !(arguments_.passes_stops || (pressed && !is_new))) return false;
+    if (is_new) notice_.reset();
+    if (is_new && progress.waits != nullptr && !arguments_.passes_stops)
+      notice_.emplace(arguments_.file, progress.waits->line);
+    const bool is_continued = !is_new && (pressed || (notice_ && notice_->is_continued()));
+    if (progress.waits == nullptr || !(arguments_.passes_stops || is_continued)) return false;
     require_startable(board_, scale_, relative_);
     return true;
   }
@@ -130,6 +137,7 @@ class Operator {
   const host::PathStop* announced_ = nullptr;
   bool is_joined_ = false;  ///< the board's own hold has become the operator's
   bool ends_ = false;
+  std::optional<host::StopNotice> notice_;  ///< for the workbench
 };
 
 /// Runs a program in parts: each probing move is one part, and the next part begins where it ended.

@@ -282,10 +282,8 @@ void add_run(CLI::App& app) {
       "says G64; G64\n"
       "without P has a tolerance of 0.05 mm. On a terminal Ctrl-Z holds and resumes the feed, Ctrl-C stops on the "
       "path,\n"
-      "M0 and M1 wait for Enter, - and + override the feeds while it runs, and < and > the rapids: in steps of 10 %, "
-      "up "
-      "to\n"
-      "what was planned (--feed, --rapid).");
+      "M0 and M1 wait for Enter, there or in the workbench. - and + override the feeds while it runs, and < and > the\n"
+      "rapids: in steps of 10 %, up to what was planned (--feed, --rapid).");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -19,6 +19,7 @@
 #include "host/input_limits.hpp"
 #include "host/read_file.hpp"
 #include "host/report/effect_pages.hpp"
+#include "host/stop_notice.hpp"
 #include "host/workbench/access.hpp"
 #include "host/workbench/actions.hpp"
 #include "host/workbench/folder.hpp"
@@ -211,6 +212,13 @@ struct Server::Parts {
     send(response, {{"report", story_page(folder, request, steps)}});
   }
 
+  static void send_stops(Response& response) {
+    nlohmann::json stops = nlohmann::json::array();
+    for (const WaitingProgram& one : waiting_programs())
+      stops.push_back({{"id", one.id}, {"program", one.program}, {"line", one.line}});
+    send(response, {{"stops", std::move(stops)}});
+  }
+
   void submit(const Request& request, Response& response) {
     if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is not a job");
     send(response, {{"id", jobs.submit(request)}});
@@ -255,6 +263,12 @@ struct Server::Parts {
     });
     post("/api/jobs",
          [this](const Query&, Response& response, const std::string& body) { submit(parse_request(body), response); });
+    get("/api/stops", [](const Query&, Response& response) { send_stops(response); });
+    post(R"(/api/stops/([A-Za-z0-9-]{1,40})/continue)",
+         [](const Query& request, Response& response, const std::string&) {
+           continue_program(request.matches[1]);
+           send(response, nlohmann::json::object());
+         });
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
     });

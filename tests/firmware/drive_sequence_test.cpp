@@ -274,6 +274,19 @@ TEST_F(Sequence, AWishToStopWhileItStartsIsObeyed) {
   }
 }
 
+/// Rest before the loop closed, at this very place, says nothing about the axis after it has opened.
+TEST_F(Sequence, AnAxisStandsOnlyOnceItHasBeenSeenAtRestWithoutItsLoop) {
+  DrivenAxis axis(parameters(false, false));
+  run_until_enabled(axis);
+  ASSERT_TRUE(axis.axis.disable());
+  while (axis.axis.state() != SupervisorState::ready) run(axis, 1);
+  for (int k = 0; k < firmware::Standstill::kSamples; ++k) {
+    EXPECT_FALSE(axis.axis.enable()) << k;
+    run(axis, 1);
+  }
+  EXPECT_TRUE(axis.axis.enable());
+}
+
 TEST_F(Sequence, AReadyInputWithoutATimeIsRefused) {
   auto p = parameters(true, false);
   p.sequence.amplifier_wait = 0;

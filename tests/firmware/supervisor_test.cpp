@@ -266,8 +266,8 @@ TEST_F(Board, AnotherFaultDuringAStopIsSeenAndTheWorseOneTakesOver) {
   EXPECT_EQ(axes[0].state(), SupervisorState::fault);
   expect_safe(0);
   EXPECT_EQ(axes[0].fault(), AxisFault::host_heartbeat_lost) << "the first cause stays";
-  EXPECT_EQ(axes[0].second_fault(), AxisFault::drive_fault);
-  EXPECT_EQ(axes[1].second_fault(), AxisFault::none);
+  EXPECT_EQ(axes[0].latched().second(), AxisFault::drive_fault);
+  EXPECT_EQ(axes[1].latched().second(), AxisFault::none);
 }
 
 TEST_F(Board, OfSeveralFaultsDuringAStopTheWorstIsTheSecond) {
@@ -279,17 +279,17 @@ TEST_F(Board, OfSeveralFaultsDuringAStopTheWorstIsTheSecond) {
   ASSERT_EQ(axes[0].fault(), AxisFault::other_axis_stopped);
   io[0].limits().state.positive_end = true;
   step();
-  EXPECT_EQ(axes[0].second_fault(), AxisFault::limit_switch_positive);
+  EXPECT_EQ(axes[0].latched().second(), AxisFault::limit_switch_positive);
   EXPECT_EQ(axes[0].state(), SupervisorState::stopping);
   io[0].encoder().reading.valid = false;
   step();
-  EXPECT_EQ(axes[0].second_fault(), AxisFault::encoder_invalid);
+  EXPECT_EQ(axes[0].latched().second(), AxisFault::encoder_invalid);
   run(300);
   EXPECT_EQ(axes[0].state(), SupervisorState::fault);
   io[0].encoder().reading.valid = true;
   io[0].limits().state.positive_end = false;
   ASSERT_TRUE(axes[0].clear_fault());
-  EXPECT_EQ(axes[0].second_fault(), AxisFault::none);
+  EXPECT_EQ(axes[0].latched().second(), AxisFault::none);
 }
 
 TEST_F(Board, AStopWhoseSensorFailsForOneSampleEndsInAFault) {

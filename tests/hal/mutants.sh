@@ -1,9 +1,9 @@
 #!/bin/sh
-# mutants.sh ROOT PARTS_LIBRARY CXX all|few|DRIVER: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
+# mutants.sh ROOT LIBRARIES CXX all|few|DRIVER: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
 # unless each makes its driver's test fail. A mistake whose text is not found exactly once, or that does not compile, is
 # an error in the list. `few` tries the first mistake of each driver, DRIVER all mistakes of one driver.
 set -eu
-root=$1 library=$2 cxx=$3 which=$4
+root=$1 libraries=$2 cxx=$3 which=$4
 jobs=$(nproc)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -51,7 +51,7 @@ awk -v root="$root" -v work="$work" -v which="$which" '
 
 cat >"$work/try.sh" <<'END'
 folder=$1
-if ! $CXX $FLAGS -include "$WORK/common.hpp" -I"$folder" -I"$ROOT" "$(cat "$folder/test")" $(cat "$folder/too") "$LIBRARY" -lgtest_main -lgtest -pthread \
+if ! $CXX $FLAGS -include "$WORK/common.hpp" -I"$folder" -I"$ROOT" "$(cat "$folder/test")" $(cat "$folder/too") $LIBRARIES -lgtest_main -lgtest -lrapidcheck -pthread \
   -o "$folder/program" 2>"$folder/errors"; then
   echo "does not compile: $(cat "$folder/what")"
   head -5 "$folder/errors"
@@ -64,7 +64,7 @@ fi
 rm -f "$folder/program"
 exit 1
 END
-export WORK="$work" ROOT="$root" LIBRARY="$library" CXX="$cxx" FLAGS="$flags"
+export WORK="$work" ROOT="$root" LIBRARIES="$libraries" CXX="$cxx" FLAGS="$flags"
 tried=$(find "$work" -name what | wc -l)
 if find "$work" -name what | sed 's,/what$,,' | sort | xargs -P "$jobs" -n 1 sh "$work/try.sh"; then
   echo "mutants: all $tried mistakes were found"

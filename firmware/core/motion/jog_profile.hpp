@@ -82,17 +82,9 @@ class JogProfile {
 
   /// At rest, with nothing left to do.
   constexpr bool at_rest() const { return velocity_ == 0 && target_ == 0 && step_ == 0 && !settling_; }
-  constexpr bool at_target() const { return velocity_ == target_ && step_ == 0 && !settling_; }
   /// The last sample was at the target, and all further samples will be.
   constexpr bool is_steady() const { return is_steady_; }
   constexpr Increment velocity() const { return velocity_; }
-  /// Towards lower values.
-  constexpr bool is_falling() const { return step_ > 0 && !upward_; }
-  /// The nearest velocity that it can hold: the acceleration falls from the next sample on.
-  constexpr Increment levelled_velocity() const {
-    const Increment rest = run_out_ - acceleration_;
-    return velocity_ + (upward_ ? rest : -rest);
-  }
   /// The velocity after the present acceleration has been reduced to zero, and the samples that this takes.
   constexpr Increment run_out_velocity() const { return velocity_ + (upward_ ? run_out_ : -run_out_); }
   constexpr std::int32_t run_out_samples() const { return step_; }

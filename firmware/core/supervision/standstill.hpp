@@ -16,6 +16,12 @@ class Standstill {
     slack_ = 2 + (play - 2) / 8;
   }
 
+  /// The loop has opened here: what was seen before says nothing about the axis now.
+  constexpr void restart(std::int64_t counts) {
+    still_at_ = counts;
+    samples_ = 0;
+  }
+
   /// Call it in each sample of an open loop.
   constexpr void watch(std::int64_t counts) {
     if (samples_ < kSamples) ++samples_;

@@ -180,7 +180,6 @@ class SupervisedAxis {
   constexpr AxisFault fault() const { return latched_.first(); }
   /// Whether a new fault occurred since the last call.
   constexpr bool take_new_fault() { return latched_.take_new(); }
-  constexpr AxisFault second_fault() const { return latched_.second(); }
   /// The fault that stopped it since the last clear_fault().
   constexpr const FaultLatch& latched() const { return latched_; }
   /// The amplifier still drives although its enable has dropped. Until clear_fault().
@@ -466,6 +465,7 @@ class SupervisedAxis {
       release_brake(false);
       sensor_stop_.end();
       if (was_on) drop_watch_.begin();
+      if (was_on) standstill_.restart(axis_.telemetry().encoder_counts);
       axis_.disable();
     }
   }

@@ -7,6 +7,7 @@ import { showGallery } from "./gallery.js";
 import { showOpening } from "./opening.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
+import { continueTheOne, stopsPlace, watchStops } from "./stops.js";
 
 /** @type {[string, string, (place: Element, detail?: string) => any][]} */
 const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs]];
@@ -41,6 +42,7 @@ function goTo() {
 
 function pressed(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("input:not([type=radio]):not([type=checkbox]), select, textarea")) return;
+  if (event.key === "Enter" && !event.repeat && !event.target.closest("a, button, input, summary")) return continueTheOne();
   const view = kViews[Number(event.key) - 1];
   if (view && !isShown(view[0])) location.hash = view[0];
   else if (view) return;
@@ -49,7 +51,7 @@ function pressed(event) {
 
 async function start() {
   if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
-  document.getElementById("view").replaceChildren(progress, content);
+  document.getElementById("view").replaceChildren(stopsPlace, progress, content);
   acceptDrops();
   onChoice(() => !isShown("jobs") && !isShown("open") && show());
   onJobs(async (ended) => {
@@ -60,6 +62,7 @@ async function start() {
   });
   window.addEventListener("hashchange", goTo);
   document.addEventListener("keydown", pressed);
+  watchStops();
   try {
     await loadFolder();
     await lookAtJobs();

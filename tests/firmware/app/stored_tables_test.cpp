@@ -162,6 +162,17 @@ TEST(StoredTables, DamageIsNamed) {
   }
 }
 
+TEST(StoredTables, HoldAsManyPointsAsAReaderTakes) {
+  SimulatedFlash flash(2, 16384, 4);
+  Store store(flash);
+  ParameterValues values = values_of(1);
+  store.load(values);
+  constexpr int kMost = firmware::kMostPitchPoints;
+  ASSERT_EQ(load(store, values, 0, points(kMost, 0)), SaveResult::saved);
+  EXPECT_EQ(load(store, values, 0, points(kMost + 1, 0)), SaveResult::not_verified);
+  EXPECT_EQ(tables_at_start(flash).x, points(kMost, 0)) << "the one before stays";
+}
+
 TEST(StoredTables, NeedRoomAndTheRightPoints) {
   SimulatedFlash flash(2, 2048, 4);
   Store store(flash);
