@@ -53,10 +53,6 @@ double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& 
                   explained_share(diagnosis.before_train_robust, candidate.train_after_robust));
 }
 
-double error_of_both(const JudgedCandidate& candidate) {
-  return std::sqrt(candidate.after_robust * candidate.train_after_robust);
-}
-
 std::size_t parameters_of(const JudgedCandidate& candidate) {
   std::size_t count = 0;
   for (const std::string& kind : candidate.kinds)

@@ -29,10 +29,6 @@ double explained_share(double before, double after);
 /// because no model predicts their times.
 double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
-/// Error of a candidate over the noise floor, both sets weighted equally: the objective of the fits, in which a single
-/// late breakaway or impact, whose time no model predicts, does not outweigh all windows that fit.
-double error_of_both(const JudgedCandidate& candidate);
-
 /// Number of parameters that a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);
 

@@ -81,7 +81,7 @@ void judge_candidates(Diagnosis& diagnosis, const Findings& findings, const SetE
                      probability_of_luck(after[k], after[more], all.size(), windows_in(kLuckBlock_s, validation),
                                          validation.common_square));
   });
-  std::ranges::stable_sort(diagnosis.candidates, {}, error_of_both);
+  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
 }
 
 }  // namespace

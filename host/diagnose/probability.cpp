@@ -11,10 +11,11 @@ namespace host {
 
 namespace {
 
-/// Log of the error plus the penalty for a candidate's complexity. The error is bounded below, because an error below
-/// the noise floor shows only that the noise floor is uncertain.
+/// Log of the error, with both sets weighted equally, plus the penalty for a candidate's complexity. Errors are bounded
+/// below, because an error below the noise floor shows only that the noise floor is uncertain.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
-  return std::log(std::max(error_of_both(candidate), 0.9 * kComplete)) +
+  const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
+  return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
          scale.further * static_cast<double>(candidate.kinds.size() - 1) +
          scale.parameter * static_cast<double>(parameters_of(candidate)) +
          scale.bound * static_cast<double>(candidate.on_bound.size());

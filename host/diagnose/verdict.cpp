@@ -27,6 +27,14 @@ constexpr double kTie = 0.05;
 /// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
 
+double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
+
+/// The objective of the fits: a single late breakaway, whose time no model predicts, does not outweigh all windows that
+/// fit.
+double fitted_error(const JudgedCandidate& candidate) {
+  return std::sqrt(candidate.after_robust * candidate.train_after_robust);
+}
+
 /// The best candidate with `size` effects. One that helps only at a bound of its range is returned only if there is no
 /// other.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
@@ -212,10 +220,10 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   if (single != nullptr) single = simplest_near(single, diagnosis);
   const JudgedCandidate* triple = best_of_size(diagnosis, 3);
   const auto gains = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return error_of_both(more) < (1.0 - kLeastFurtherGain) * error_of_both(less);
+    return fitted_error(more) < (1.0 - kLeastFurtherGain) * fitted_error(less);
   };
   const auto explains_enough = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return explained_share(error_of_both(less), error_of_both(more)) >= kLeastFurtherShare;
+    return explained_share(fitted_error(less), fitted_error(more)) >= kLeastFurtherShare;
   };
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
                            gains(*pair, *single) &&

@@ -95,10 +95,6 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   fit.colour = start.colour;
   VectorXd unit_weights = VectorXd::Ones(n), factors;
   double square = -1.0, before = -HUGE_VAL;
-  if (start.before != nullptr) {
-    square = start.before->noise * start.before->noise;
-    unit_weights = square * start.before->weights;
-  }
   MatrixXd gram;
   VectorXd white_y, deviations_now;
   MatrixXd white;
@@ -154,7 +150,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
 
 EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
                                double give_up) const {
-  EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .before = &before, .give_up = give_up};
+  EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
   start.sizes = no_memory();
   EvidenceFit small = fit(columns, deviations, start);

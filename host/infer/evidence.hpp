@@ -56,8 +56,7 @@ struct EvidenceFit {
 struct EvidenceStart {
   NoiseColour colour = {.drift = 0.5};
   Eigen::VectorXd sizes;
-  const EvidenceFit* before = nullptr;  ///< a fit of the same rows whose weights and noise the first round uses
-  bool hold_sizes = false;              ///< true if the sizes stay fixed
+  bool hold_sizes = false;  ///< true if the sizes stay fixed
   /// Log evidence, nats. A fit ends if it is below this after three rounds and further rounds change little.
   double give_up = -HUGE_VAL;
 };
