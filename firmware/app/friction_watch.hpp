@@ -60,11 +60,8 @@ class FrictionStrokes {
 template <typename Application>
 class FrictionWatch {
  public:
-  /// Work of the background, once a round: takes each control period once; periods that a longer round leaves out do
-  /// not count.
+  /// For the background, once after each control period that it sees.
   [[gnu::noinline]] void poll(Application& app) {
-    if (app.control_periods() == period_) return;
-    period_ = app.control_periods();
     for (std::size_t i = 0; i < Application::kAxes; ++i) {
       const AxisValues values = app.active().axis(i);
       if (values.get<"feedforward.friction_watch">() && values.get<"feedforward.friction">()) watch(app, i, values);
@@ -104,7 +101,6 @@ class FrictionWatch {
   }
 
   std::array<FrictionStrokes, Application::kAxes> strokes_{};
-  std::uint32_t period_ = 0;
 };
 
 }  // namespace firmware

@@ -16,10 +16,8 @@ namespace firmware {
 template <typename Application>
 class ProcessLimit {
  public:
-  /// Work of the background, once a round: takes each control period once.
+  /// For the background, once after each control period that it sees.
   [[gnu::noinline]] void poll(Application& app) {
-    if (app.control_periods() == period_) return;
-    period_ = app.control_periods();
     for (std::size_t axis = 0; axis < Application::kAxes; ++axis) {
       const AxisValues values = app.active().axis(axis);
       const bool is_on =
@@ -52,7 +50,6 @@ class ProcessLimit {
   }
 
   std::array<std::uint32_t, Application::kAxes> excess_{};  ///< control periods above the limit less those below
-  std::uint32_t period_ = 0;
 };
 
 }  // namespace firmware

@@ -107,10 +107,6 @@ void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, c
   if (!lit.force.w.empty()) views.push_back(std::move(lit));
 }
 
-}  // namespace
-
-namespace {
-
 /// The board's estimate of the process force, where the record holds it, with its 95 % band.
 void add_process_force(const Record& record, TimePlot& plot) {
   const auto force = std::ranges::find(record.extra, kProcessForce, &ExtraChannel::name);

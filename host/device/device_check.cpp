@@ -124,11 +124,13 @@ class Examination {
         fmt::format("{} to {} us of {:.0f}, work up to {} us", timing.shortest_us, timing.longest_us, period_us,
                     timing.busiest_us),
         "lower control.rate; on a simulated board: the computer is too busy");
-    for (std::size_t axis = 0; axis < board_.axis_count(); ++axis)
-      add((timing.friction_taken_back >> axis & 1u) == 0, CheckResult::attention,
+    for (std::size_t axis = 0; axis < board_.axis_count(); ++axis) {
+      const bool is_taken_back = (timing.friction_taken_back >> axis & 1u) != 0;
+      add(!is_taken_back, CheckResult::attention,
           fmt::format("friction feed-forward of {}", firmware::kAxisNames[axis]),
-          (timing.friction_taken_back >> axis & 1u) == 0 ? "as set" : "taken back: the axis followed worse with it",
+          is_taken_back ? "taken back: the axis followed worse with it" : "as set",
           "friction has changed: identify it anew (`axistool friction`), then `design` and `set-params`");
+    }
     add(timing.rejected_reports == 0, CheckResult::attention, "damaged reports",
         fmt::format("{} of {}", timing.rejected_reports, timing.reports), "another cable, away from the motor's");
     if (timing.stack_size > 0)

@@ -86,7 +86,7 @@ nlohmann::json candidate_json(const JudgedCandidate& candidate, const Diagnosis&
     parameters[kind] = parameters_json(*candidate.model.find(kind), candidate.model.data.kind);
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   return {{"kinds", candidate.kinds},
-          {"before", diagnosis.judged_as_compared() ? diagnosis.base_error.validate.combined : candidate.before},
+          {"before", diagnosis.printed_base().validate},
           {"after", Diagnosis::printed(candidate).validate},
           {"train_after", Diagnosis::printed(candidate).train},
           {"parameters", candidate.kinds.size() == 1 ? parameters.begin().value() : parameters},

@@ -20,11 +20,7 @@ std::size_t windows_in(double span_s, const RecordSet& set) {
                                static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
 }
 
-}  // namespace
-
-namespace {
-
-/// The same from the errors on both sets.
+/// judge_candidate() from the errors on both sets.
 JudgedCandidate judged_by(const Candidate& candidate, const SetError& train_after, const SetError& after,
                           const RecordSet& training, const RecordSet& validation, const SetError& before,
                           std::size_t tried) {

@@ -78,8 +78,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "add the estimated disturbance to the command"},
     {83, axis, "feedback.hold_effort", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
      "estimated disturbance above which the feed of a path is held until it is released; with feedforward.friction it "
-     "is "
-     "the process force; 0: no limit"},
+     "is the process force; 0: no limit"},
 
     {96, axis, "feedforward.zero_phase", toggle, "", "", 0, 1, 0, while_disabled,
      "zero phase error tracking; off: the reference speed alone, eqs. (50) and (52)"},

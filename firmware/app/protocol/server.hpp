@@ -30,8 +30,11 @@ class ProtocolServer {
   void poll(Usb& usb, const ProgramUse& use = {}) {
     use_ = use;
     app_.path().poll();
-    process_limit_.poll(app_);
-    friction_watch_.poll(app_);
+    if (const std::uint32_t period = app_.control_periods(); period != watched_period_) {
+      watched_period_ = period;  // periods that a longer round leaves out do not count
+      process_limit_.poll(app_);
+      friction_watch_.poll(app_);
+    }
     app_.keep_fault_log();
     app_.settings().poll();
     if (update_.trial_has_failed()) app_.board().restart();
@@ -464,6 +467,7 @@ class ProtocolServer {
   UpdateRequests<Application> update_;
   FrictionWatch<Application> friction_watch_;
   ProcessLimit<Application> process_limit_;
+  std::uint32_t watched_period_ = 0;
   ProgramUse use_{};
   hal::HidReport reply_{};
   hal::HidReport samples_{};
