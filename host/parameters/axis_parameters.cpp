@@ -35,11 +35,10 @@ firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription&
 }
 
 Eigen::Matrix<double, 3, Eigen::Dynamic> estimator_of(const firmware::AxisValues& board) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic> gain(3, 2);
+  Eigen::Matrix<float, 3, 2> gain;
   gain << board.get<"kalman.k11">(), board.get<"kalman.k12">(), board.get<"kalman.k21">(), board.get<"kalman.k22">(),
       board.get<"kalman.k31">(), board.get<"kalman.k32">();
-  if (!board.get<"tachometer.fitted">()) gain.conservativeResize(3, 1);
-  return gain;
+  return gain.leftCols(board.get<"tachometer.fitted">() ? 2 : 1).cast<double>();
 }
 
 }  // namespace host
