@@ -133,6 +133,38 @@ double WindowScore::weighed(double common_square) const {
   return weighed_square(x, common_square) + weighed_square(w, common_square) + weighed_square(effort, common_square);
 }
 
+namespace {
+
+struct ChannelScore {
+  std::size_t window;  ///< index in SetError::windows
+  double square;       ///< mean squared error over squared noise floor
+  double floor;
+};
+
+/// Fills SetError::surprise and that of each window.
+void add_surprise(const std::vector<ChannelScore>& scores, SetError& error) {
+  constexpr double kDegrees = 4.0;  // of the t distribution (Lange et al. 1989)
+  constexpr int kRounds = 30;       // of the fixed point for the scale of a t distribution
+  const auto count = static_cast<double>(scores.size());
+  if (scores.empty()) return;
+  double scale = 1.0;  // squared, over the noise floors
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0;
+    for (const ChannelScore& score : scores) sum += (kDegrees + 1.0) * score.square / (kDegrees + score.square / scale);
+    scale = std::max(1.0, sum / count);
+  }
+  double sum = 0.0;
+  for (const ChannelScore& score : scores) {
+    const double surprise = std::log(score.floor) + 0.5 * std::log(scale) +
+                            0.5 * (kDegrees + 1.0) * std::log1p(score.square / (kDegrees * scale));
+    error.windows[score.window].surprise += surprise;
+    sum += surprise;
+  }
+  error.surprise = std::isfinite(sum) ? sum / count : HUGE_VAL;
+}
+
+}  // namespace
+
 double weighed_square(double square, double common_square) {
   return common_square * std::log1p(square / common_square);
 }
@@ -145,6 +177,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   };
   Sum x, w, effort;
   double combined = 0.0, robust = 0.0;
+  std::vector<ChannelScore> scores;
   for_each_window(
       drive, set,
       [&](const ComparedRecord& compared, std::size_t r, std::size_t index, const Predictions& predictions) {
@@ -159,6 +192,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
                            sum.square += square;
                            sum.floor += floor * floor;
                            ++sum.count;
+                           scores.push_back({error.windows.size(), score.*member, floor});
                          });
         combined += score.x + score.w + score.effort;
         robust += score.weighed(set.common_square);
@@ -171,6 +205,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   const std::size_t channels = x.count + w.count + effort.count;
   error.combined = root_mean(combined, channels);
   error.robust = root_mean(robust, channels);
+  add_surprise(scores, error);
   error.x_rms = root_mean(x.square, x.count);
   error.w_rms = root_mean(w.square, w.count);
   error.x_floor = root_mean(x.floor, x.count);
@@ -178,6 +213,12 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   error.effort_rms = root_mean(effort.square, effort.count);
   error.effort_floor = root_mean(effort.floor, effort.count);
   return error;
+}
+
+SetError error_over_own_floors(const sim::DriveDescription& model, const RecordSet& set) {
+  RecordSet own = set;
+  renew_floors(own, model);
+  return error_of(sim::Drive(model), own);
 }
 
 std::size_t channel_count(const ComparedRecord& compared, Measure measure) {

@@ -66,7 +66,8 @@ struct WindowScore {
   std::size_t window;
   double x = 0.0;  ///< mean squared error over squared noise floor; 0 if the record lacks the channel
   double w = 0.0;
-  double effort = 0.0;  ///< the same for torque or force, if these are the measure
+  double effort = 0.0;    ///< the same for torque or force, if these are the measure
+  double surprise = 0.0;  ///< sum over the channels, see SetError::surprise
 
   /// Sum over all channels with their weights in a fit.
   double weighed(double common_square) const;
@@ -82,6 +83,10 @@ struct SetError {
   double w_floor = 0.0;
   double effort_rms = 0.0;  ///< Nm or N, if torque or force is the measure; x and w are then zero
   double effort_floor = 0.0;
+  /// Mean of -log p of the errors over all windows and channels, under a t distribution whose scale is the noise floor
+  /// times a common factor of at least 1. Compares models by their own floors: a model that is uncertain of a motion
+  /// gains by a large floor only where it errs as much. A constant in the unit of the channels is left out.
+  double surprise = 0.0;
   std::vector<WindowScore> windows;
 };
 
@@ -89,6 +94,9 @@ struct SetError {
 double weighed_square(double square, double common_square);
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set);
+
+/// The same over the model's own noise floors.
+SetError error_over_own_floors(const sim::DriveDescription& model, const RecordSet& set);
 
 /// Number of measured channels of a record in this measure.
 std::size_t channel_count(const ComparedRecord& compared, Measure measure);

@@ -201,24 +201,9 @@ ShareDone part_of(const ShareDone& progress, double from, double to) {
   return [progress, from, to](double share) { progress(from + share * (to - from)); };
 }
 
-Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
-                 const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation) {
-  Candidate candidate{kinds, model, {}, {}, HUGE_VAL};
-  const sim::Drive drive(model), without(base);
-  candidate.training = error_of(drive, training);
-  candidate.validation = error_of(drive, validation);
-  if (!needs_own_floors(model) || needs_own_floors(base)) {
-    candidate.left = candidate.training.robust * candidate.validation.robust /
-                     (error_of(without, training).robust * error_of(without, validation).robust);
-    return candidate;
-  }
-  candidate.left = 1.0;
-  for (const RecordSet* shared : {&training, &validation}) {
-    RecordSet own = *shared;
-    renew_floors(own, model);
-    candidate.left *= error_of(drive, own).robust / error_of(without, own).robust;
-  }
-  return candidate;
+Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model, const RecordSet& training,
+                 const RecordSet& validation) {
+  return {kinds, model, error_over_own_floors(model, training), error_over_own_floors(model, validation)};
 }
 
 namespace {
@@ -472,9 +457,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
     if (is_close) fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));
-    candidates[k] = judged(all, finalists[k].model, model, training, validation);
+    candidates[k] = judged(all, finalists[k].model, training, validation);
   });
-  std::ranges::stable_sort(candidates, {}, &Candidate::left);
+  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
   if (effort.cut_short != nullptr)
     for (const std::vector<Start>* list : {&starts, &race, &finalists})
       for (const Start& start : *list)

@@ -15,12 +15,11 @@ namespace host {
 struct Candidate {
   std::vector<std::string> kinds;  ///< the effects added to the base, in the order of the search
   sim::DriveDescription model;
-  SetError training;
-  SetError validation;
+  SetError training;    ///< over the model's own noise floors
+  SetError validation;  ///< over the model's own noise floors
 
-  /// Error relative to the base, as the product of training and validation. A real effect lowers both errors, a chance
-  /// fit only one.
-  double left = 1.0;
+  /// Both sets count alike: a real effect predicts both better, a chance fit only one.
+  double surprise() const { return training.surprise + validation.surprise; }
 };
 
 /// Called from any thread with the finished share of the work, 0..1.
@@ -57,9 +56,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
                                     const RecordSet& training, const RecordSet& validation,
                                     const ShareDone& progress = {}, const SearchEffort& effort = {});
 
-/// Errors of an unfitted model on both sets, relative to the base that it extends.
-Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
-                 const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation);
+/// A fitted model with its errors on both sets.
+Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model, const RecordSet& training,
+                 const RecordSet& validation);
 
 /// Fits the base from several starts, because a refit stuck in a local minimum causes false discoveries.
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training);

@@ -35,10 +35,13 @@ const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kin
   return found == diagnosis.candidates.end() ? nullptr : &*found;
 }
 
-/// Share of the squared error on held-back records that a candidate explains, in the measure that decided.
-double taken_by(const JudgedCandidate& candidate) {
-  const double left = candidate.before > 0.0 ? candidate.after / candidate.before : 1.0;
-  return 1.0 - left * left;
+/// Share of the squared error on held-back records that a candidate explains, in the measure in which it explains more.
+double taken_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  const auto taken = [](double before, double after) {
+    return before > 0.0 ? 1.0 - after * after / (before * before) : 0.0;
+  };
+  return std::max(taken(candidate.before, candidate.after),
+                  taken(diagnosis.before_level.validate, candidate.level.validate));
 }
 
 /// The smallest set of most probable effects such that one of them is present beside `certain` with a probability of at
@@ -52,7 +55,7 @@ Kinds rivals_beside(const Kinds& certain, const Diagnosis& diagnosis) {
   std::ranges::stable_sort(further, std::greater(), &JudgedCandidate::probability);
   Kinds group;
   for (const JudgedCandidate* candidate : further) {
-    if (taken_by(*candidate) < kWorthNaming) break;
+    if (taken_by(*candidate, diagnosis) < kWorthNaming) break;
     group.push_back(
         *std::ranges::find_if(candidate->kinds, [&](const std::string& kind) { return !holds(certain, kind); }));
     if (probability_of_any(diagnosis, group, certain) < kClaimed) continue;
@@ -142,7 +145,7 @@ void settle_status(Diagnosis& diagnosis) {
   if (!named || diagnosis.candidates.empty()) return;
   if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kClaimed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
-  const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
+  const bool hardly_helps = whole != nullptr && taken_by(*whole, diagnosis) < kWorthNaming;
   // All named effects are certain together; other effects of the best candidate are at most part of a group of rivals.
   Kinds together;
   if (verdict.status == Status::missing && !hardly_helps)
@@ -174,12 +177,16 @@ std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
   if (diagnosis.by_effort && diagnosis.screen) return diagnosis.screen->best().kinds;
   if (verdict.status == Status::ambiguous) return {verdict.effects.front()};
-  Kinds kinds = verdict.effects;
-  for (const Kinds& group : verdict.alternatives) {
-    if (std::ranges::any_of(group, [&](const std::string& kind) { return holds(kinds, kind); })) continue;
-    if (probability_of_any(diagnosis, group, kinds) >= kClaimed) kinds.push_back(group.front());
-  }
-  return candidate_of(diagnosis, kinds) != nullptr ? kinds : verdict.effects;
+  const auto is_named = [&](const std::string& kind) {
+    return holds(verdict.effects, kind) ||
+           std::ranges::any_of(verdict.alternatives, [&](const Kinds& group) { return holds(group, kind); });
+  };
+  const JudgedCandidate* modelled = nullptr;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (holds_all(candidate.kinds, verdict.effects) && std::ranges::all_of(candidate.kinds, is_named) &&
+        (modelled == nullptr || candidate.probability > modelled->probability))
+      modelled = &candidate;
+  return modelled != nullptr && !verdict.effects.empty() ? modelled->kinds : verdict.effects;
 }
 
 void fill_found(Diagnosis& diagnosis) {

@@ -37,8 +37,8 @@ bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   const auto on = [&](double before, double after) {
     return before > kSomething && after < (1.0 - kLeastGain) * before && explained_share(before, after) >= least;
   };
-  return on(candidate.before, candidate.after) && (on(diagnosis.before_train, candidate.train_after) ||
-                                                   on(diagnosis.before_train_robust, candidate.train_after_robust));
+  return (on(candidate.before, candidate.after) || on(diagnosis.before_level.validate, candidate.level.validate)) &&
+         (on(diagnosis.before_train, candidate.train_after) || on(diagnosis.before_level.train, candidate.level.train));
 }
 
 }  // namespace
@@ -48,10 +48,14 @@ double explained_share(double before, double after) {
   return there_is > 0.0 ? std::clamp((before * before - after * after) / there_is, 0.0, 1.0) : 0.0;
 }
 
-double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  return std::max(explained_share(diagnosis.before_train, candidate.train_after),
-                  explained_share(diagnosis.before_train_robust, candidate.train_after_robust));
+double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  return std::min(std::max(explained_share(candidate.before, candidate.after),
+                           explained_share(diagnosis.before_level.validate, candidate.level.validate)),
+                  std::max(explained_share(diagnosis.before_train, candidate.train_after),
+                           explained_share(diagnosis.before_level.train, candidate.level.train)));
 }
+
+double level_of_both(const SetLevels& level) { return std::sqrt(level.train * level.validate); }
 
 std::size_t parameters_of(const JudgedCandidate& candidate) {
   std::size_t count = 0;
@@ -96,9 +100,7 @@ std::vector<std::string> unphysical_parameters(const sim::DriveDescription& mode
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   if (!gains(candidate, diagnosis)) return Reservation::no_gain;
   if (!candidate.on_bound.empty()) return Reservation::on_bound;
-  if (!diagnosis.rough && (explained_share(candidate.before, candidate.after) < 1.0 - kMostLeft ||
-                           explained_in_training(candidate, diagnosis) < 1.0 - kMostLeft))
-    return Reservation::leaves_much;
+  if (!diagnosis.rough && explained_by(candidate, diagnosis) < 1.0 - kMostLeft) return Reservation::leaves_much;
   if (candidate.luck > kMostLuck || candidate.confidence < (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence))
     return Reservation::luck;
   return Reservation::none;

@@ -19,15 +19,21 @@ inline constexpr double kMostLuck = 0.05;
 /// claimed.
 inline constexpr double kLeastGain = 0.05;
 
+/// Candidates whose levels differ by a smaller share are not told apart.
+inline constexpr double kTie = 0.05;
+
 /// Two models predict equally well if their errors differ by a smaller factor.
 inline constexpr double kAsGood = 1.1;
 
 /// Explained share of the explainable squared error, before^2 - kComplete^2; 0..1. 0 if nothing is explainable.
 double explained_share(double before, double after);
 
-/// The same share on the training data. The larger one of with and without the windows of late breakaways or impacts,
-/// because no model predicts their times.
-double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
+/// The same share of a candidate, on the set of which it is smaller. The larger one of combined error and level,
+/// because no model predicts the times of late breakaways and impacts, and because some effects show in few windows.
+double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
+
+/// Geometric mean of both levels.
+double level_of_both(const SetLevels& level);
 
 /// Number of parameters that a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);

@@ -123,6 +123,14 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
+/// Whether the effects of the motion explain what those of the regression leave of the held-back records.
+bool explains_what_remains(const Diagnosis& by_motion, const Diagnosis& by_effort) {
+  const auto left = [](const Diagnosis& diagnosis) {
+    return diagnosis.rows.error_of(diagnosis.best).validate.combined;
+  };
+  return by_motion.verdict.status == Status::missing && left(by_motion) < kExplainedPart * left(by_effort);
+}
+
 /// Whether one names an effect that the other does not.
 bool names_more(const Diagnosis& one, const Diagnosis& other) {
   return !holds_all(other.verdict.effects, one.verdict.effects);
@@ -244,15 +252,17 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     } else if (diagnosis) {
       const bool tells = !screen->chosen.empty();
       const bool ends_here = screen->rows.steady && (tells || !ignores_position(screen->rows));
-      if (ends_here || (tells && !may_be_completed(*diagnosis, split.validation))) return *std::move(diagnosis);
+      const bool is_open = tells && may_be_completed(*diagnosis, split.validation);
+      if (ends_here || (tells && !is_open && is_explained(*screen))) return *std::move(diagnosis);
       // Effects that do not change the torque or force while the axis slides, such as a current limit, show in the
       // motion.
       over_long_windows = search(with_base_fitted(split));
-      const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
+      const bool is_better = tells ? explains_what_remains(*over_long_windows, *diagnosis) ||
+                                         (completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis))
                                    : goes_beyond(*over_long_windows, *screen) ||
                                          explains_what_the_balance_does_not(*over_long_windows, *diagnosis);
       if (is_better) return *std::move(over_long_windows);
-      return tells ? completed(*std::move(diagnosis)) : *std::move(diagnosis);
+      return is_open ? completed(*std::move(diagnosis)) : *std::move(diagnosis);
     }
   }
   if (!by_short_windows) {
@@ -260,6 +270,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) {
+        if (explains_what_remains(*over_long_windows, *diagnosis)) return *std::move(over_long_windows);
         // With the effects of the balance, the motion may no longer be limited by model error.
         const bool ends_here =
             screen->chosen.empty() || screen->rows.steady || !may_be_completed(*diagnosis, split.validation);

@@ -32,16 +32,23 @@ struct EffortError {
   double floor_train = 0.0, floor_validate = 0.0;
 };
 
+/// Errors from the surprise of a model (SetError): over the noise floor of the most probable model. Equal to its robust
+/// error for that model, and e times as large for one nat more per window and channel.
+struct SetLevels {
+  double train = 0.0, validate = 0.0;
+};
+
 /// A candidate and its result on validation data.
 struct JudgedCandidate {
   std::vector<std::string> kinds;
-  double before = 0.0;  ///< combined error
-  double after = 0.0;
+  double before = 0.0;  ///< combined error over the base's noise floors
+  double after = 0.0;   ///< over the candidate's own
   double train_after = 0.0;
-  double after_robust = 0.0, train_after_robust = 0.0;  ///< SetError::robust; 0 if the force balance decided
-  double confidence = 0.0;                              ///< probability that the improvement is not by chance, 0..1
-  double luck = 1.0;         ///< p-value of the gain, as the best of all tried candidates, 0..1
-  double suffices = 1.0;     ///< p-value of the gain of the best candidate with one effect more, 0..1
+  SetLevels level;          ///< 0 if the force balance decided
+  double confidence = 0.0;  ///< probability that the improvement is not by chance, 0..1
+  double luck = 1.0;        ///< p-value of the gain, as the best of all tried candidates, 0..1
+  /// Least p-value, 0..1, of the gain of a candidate with one effect more, or of a better one with as many.
+  double suffices = 1.0;
   double probability = 0.0;  ///< probability of these effects given these records, 0..1
   sim::DriveDescription model;
   std::vector<std::string> on_bound = {};  ///< parameters that reached a bound of their range
@@ -97,7 +104,7 @@ struct Diagnosis : PreparedSets {
   std::optional<EffortError> effort;
   double given_train = 0.0, given_validate = 0.0;    ///< combined errors of the given model
   double before_train = 0.0, before_validate = 0.0;  ///< combined errors of the refitted base
-  double before_train_robust = 0.0;                  ///< SetError::robust; 0 if the force balance decided
+  SetLevels before_level;                            ///< 0 if the force balance decided
   double after_train = 0.0, after_validate = 0.0;    ///< combined errors with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< regions of the error of the refitted base, all records
   ResidualTests residual;  ///< how the torque or force residual of `best` depends on each coordinate

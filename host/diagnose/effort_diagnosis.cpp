@@ -26,9 +26,6 @@ namespace {
 constexpr double kFarAboveNoise = 6.0;
 /// Most effects named in one answer.
 constexpr std::size_t kMostEffects = 6;
-/// The torque or force counts as explained if at most this share of the RMS error remains (a tenth of the squared
-/// error).
-constexpr double kExplainedPart = 0.316;
 
 /// The titles of the effects of a step beyond the first `known`.
 std::string described(const ScreenedModel& model, std::size_t known) {
@@ -164,13 +161,18 @@ JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel
   return candidate;
 }
 
+bool is_explained(const EffortScreen& screen) {
+  const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
+  return before > kFarAboveNoise && left < kExplainedPart * before;
+}
+
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   if (screen.empty()) return false;
-  const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
+  const double left = over_noise(screen, screen.best(), true);
   // At steady speeds no error accumulates in the motion. A residual within noise then only means that these records
   // show no effect.
   if (screen.rows.steady && (!screen.chosen.empty() || left > kSmall)) return true;
-  if (before > kFarAboveNoise && left < kExplainedPart * before) return true;
+  if (is_explained(screen)) return true;
   if (left < kFarAboveNoise) return false;
   return !screen.chosen.empty() || is_rough(error_of(sim::Drive(screen.base.model), validation));
 }

@@ -17,6 +17,12 @@ double over_noise(const EffortScreen& screen, const ScreenedModel& model, bool j
 /// A model of the regression as a candidate, with its errors over sensor noise.
 JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel& model);
 
+/// Share of the RMS error below which it counts as explained: a tenth of the squared error.
+inline constexpr double kExplainedPart = 0.316;
+
+/// Whether the effects of the regression explain its residual.
+bool is_explained(const EffortScreen& screen);
+
 /// Whether the regression decides instead of the search by motion: the records do not determine the inertia, or the
 /// best model's residual is far above sensor noise.
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation);

@@ -249,9 +249,8 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   Addition addition;
   addition.held_back = sets.held_back;
   renew_floors(sets.training, fitted->best.model);
-  renew_floors(sets.validation, fitted->best.model);
   addition.judged = judge_candidate(fitted->best, sets.training, sets.validation,
-                                    error_of(sim::Drive(sets.base), sets.validation), 1);
+                                    error_over_own_floors(sets.base, sets.validation), 1);
   addition.estimates = document_fit(addition.judged.model, sets.training);
   return addition;
 }

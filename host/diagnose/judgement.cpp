@@ -20,27 +20,6 @@ std::size_t windows_in(double span_s, const RecordSet& set) {
                                static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
 }
 
-/// judge_candidate() from the errors on both sets.
-JudgedCandidate judged_by(const Candidate& candidate, const SetError& train_after, const SetError& after,
-                          const RecordSet& training, const RecordSet& validation, const SetError& before,
-                          std::size_t tried) {
-  constexpr double kBlock_s = 1.0;  // of the bootstrap
-  JudgedCandidate judged;
-  judged.kinds = candidate.kinds;
-  judged.before = before.combined;
-  judged.after = after.combined;
-  judged.after_robust = after.robust;
-  judged.train_after = train_after.combined;
-  judged.train_after_robust = train_after.robust;
-  judged.confidence =
-      confidence_of_improvement(before, after, windows_in(kBlock_s, validation), validation.common_square);
-  judged.luck =
-      probability_of_luck(before, after, tried, windows_in(kLuckBlock_s, validation), validation.common_square);
-  judged.model = candidate.model;
-  judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
-  return judged;
-}
-
 /// The candidates of all steps. Of several fits of the same effects, only the best is kept.
 std::vector<const Candidate*> all_of(const Findings& findings) {
   std::vector<const Candidate*> all;
@@ -50,73 +29,81 @@ std::vector<const Candidate*> all_of(const Findings& findings) {
           all, [&](const Candidate* other) { return std::ranges::is_permutation(other->kinds, candidate.kinds); });
       if (same == all.end())
         all.push_back(&candidate);
-      else if (candidate.left < (*same)->left)
+      else if (candidate.surprise() < (*same)->surprise())
         *same = &candidate;
     }
   return all;
 }
 
-void judge_candidates(Diagnosis& diagnosis, const Findings& findings, const SetError& before) {
-  const RecordSet &training = diagnosis.training, &validation = diagnosis.validation;
-  const std::vector<const Candidate*> all = all_of(findings);
+/// Levels over the floors of `best`.
+SetLevels levels_of(const SetError& train, const SetError& validate, const Candidate& best) {
+  return {best.training.robust * std::exp(train.surprise - best.training.surprise),
+          best.validation.robust * std::exp(validate.surprise - best.validation.surprise)};
+}
+
+void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>& all, const Candidate& best,
+                      const SetError& before) {
   diagnosis.tried = all.size();
   diagnosis.candidates.resize(all.size());
-  std::vector<SetError> after(all.size());
   for_each_in_parallel(all.size(), [&](std::size_t k) {
-    const sim::Drive drive(all[k]->model);
-    after[k] = error_of(drive, validation);
-    diagnosis.candidates[k] =
-        judged_by(*all[k], error_of(drive, training), after[k], training, validation, before, all.size());
-    if (diagnosis.judged_as_compared()) diagnosis.candidates[k].error = diagnosis.rows.error_of(all[k]->model);
+    JudgedCandidate& judged = diagnosis.candidates[k];
+    judged = judge_candidate(*all[k], diagnosis.training, diagnosis.validation, before, all.size());
+    judged.level = levels_of(all[k]->training, all[k]->validation, best);
+    if (diagnosis.judged_as_compared()) judged.error = diagnosis.rows.error_of(judged.model);
+    const auto tells_against = [&](const Candidate& other) {
+      if (other.kinds.size() == judged.kinds.size() + 1) return holds_all(other.kinds, judged.kinds);
+      return other.kinds.size() == judged.kinds.size() &&
+             level_of_both(levels_of(other.training, other.validation, best)) * (1.0 + kTie) <
+                 level_of_both(judged.level);
+    };
+    for (const Candidate* more : all)
+      if (tells_against(*more))
+        judged.suffices =
+            std::min(judged.suffices, probability_of_luck(all[k]->validation, more->validation, all.size(),
+                                                          windows_in(kLuckBlock_s, diagnosis.validation)));
   });
-  for_each_in_parallel(all.size(), [&](std::size_t k) {
-    for (std::size_t more = 0; more < all.size(); ++more)
-      if (all[more]->kinds.size() == all[k]->kinds.size() + 1 && holds_all(all[more]->kinds, all[k]->kinds))
-        diagnosis.candidates[k].suffices =
-            std::min(diagnosis.candidates[k].suffices,
-                     probability_of_luck(after[k], after[more], all.size(), windows_in(kLuckBlock_s, validation),
-                                         validation.common_square));
-  });
-  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
+  std::ranges::stable_sort(diagnosis.candidates, {},
+                           [](const JudgedCandidate& judged) { return level_of_both(judged.level); });
 }
 
 }  // namespace
 
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before, std::size_t tried) {
-  const sim::Drive drive(candidate.model);
-  return judged_by(candidate, error_of(drive, training), error_of(drive, validation), training, validation, before,
-                   tried);
-}
-
-const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings) {
-  if (!findings.triples.empty()) return findings.triples.front().model;
-  if (!findings.pairs.empty()) return findings.pairs.front().model;
-  return findings.singles.empty() ? base : findings.singles.front().model;
+  constexpr double kBlock_s = 1.0;  // of the bootstrap
+  JudgedCandidate judged;
+  judged.kinds = candidate.kinds;
+  judged.before = before.combined;
+  judged.after = candidate.validation.combined;
+  judged.train_after = candidate.training.combined;
+  judged.confidence = confidence_of_improvement(before, candidate.validation, windows_in(kBlock_s, validation));
+  judged.luck = probability_of_luck(before, candidate.validation, tried, windows_in(kLuckBlock_s, validation));
+  judged.model = candidate.model;
+  judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
+  return judged;
 }
 
 void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findings& findings) {
   RecordSet& training = diagnosis.training;
   RecordSet& validation = diagnosis.validation;
-  const sim::DriveDescription& reference = best_found(diagnosis.base, findings);
-  renew_floors(training, reference);
-  renew_floors(validation, reference);
-  const SetError before = error_of(sim::Drive(diagnosis.base), validation);
-  judge_candidates(diagnosis, findings, before);
-  const SetError before_train = error_of(sim::Drive(diagnosis.base), training);
+  const Candidate base = judged({}, diagnosis.base, training, validation);
+  const SetError &before = base.validation, &before_train = base.training;
+  const std::vector<const Candidate*> all = all_of(findings);
+  const auto likeliest = std::ranges::min_element(all, {}, &Candidate::surprise);
+  const Candidate& best = all.empty() || base.surprise() < (*likeliest)->surprise() ? base : **likeliest;
+  renew_floors(training, best.model);
+  renew_floors(validation, best.model);
+  diagnosis.before_level = levels_of(before_train, before, best);
   diagnosis.before_train = before_train.combined;
-  diagnosis.before_train_robust = before_train.robust;
   diagnosis.before_validate = before.combined;
-  diagnosis.given_train = error_of(sim::Drive(given), training).combined;
-  diagnosis.given_validate = error_of(sim::Drive(given), validation).combined;
+  judge_candidates(diagnosis, all, best, before);
+  diagnosis.given_train = error_over_own_floors(given, training).combined;
+  diagnosis.given_validate = error_over_own_floors(given, validation).combined;
   const bool moves = diagnosis.measure == Measure::motion;
   const RecordSet seen_training = moves ? training : by_motion(training, diagnosis.base);
   const RecordSet seen_validation = moves ? validation : by_motion(validation, diagnosis.base);
   diagnosis.where = error_regions(diagnosis.base, together(seen_training, seen_validation));
-  diagnosis.rough =
-      is_rough(diagnosis.candidates.empty() ? before
-                                            : error_of(sim::Drive(diagnosis.candidates.front().model), validation)) ||
-      !moves || diagnosis.window_s < kWindow_s;
+  diagnosis.rough = is_rough(best.validation) || !moves || diagnosis.window_s < kWindow_s;
   diagnosis.base_error = diagnosis.rows.error_of(diagnosis.base);
   diagnosis.verdict = reach_verdict(given, diagnosis);
   assign_probabilities(diagnosis);
@@ -126,18 +113,17 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   for (const JudgedCandidate& candidate : diagnosis.candidates)
     if (std::ranges::is_permutation(candidate.kinds, modelled)) diagnosis.best = candidate.model;
 
-  const sim::Drive best(diagnosis.best);
-  const SetError after_train = error_of(best, training), after = error_of(best, validation);
-  diagnosis.after_train = after_train.combined;
-  diagnosis.after_validate = after.combined;
+  const Candidate after = judged({}, diagnosis.best, training, validation);
+  diagnosis.after_train = after.training.combined;
+  diagnosis.after_validate = after.validation.combined;
   if (!moves)
     diagnosis.effort = {given.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
                         before_train.effort_rms,
                         before.effort_rms,
-                        after_train.effort_rms,
-                        after.effort_rms,
-                        after_train.effort_floor,
-                        after.effort_floor};
+                        after.training.effort_rms,
+                        after.validation.effort_rms,
+                        after.training.effort_floor,
+                        after.validation.effort_floor};
 }
 
 }  // namespace host

@@ -13,9 +13,6 @@ namespace host {
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before, std::size_t tried);
 
-/// The model whose noise floors are used: the best model that a search found.
-const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings);
-
 /// Fills errors, regions, candidates and verdict of `diagnosis`, whose sets and base must be set; `given` is the model
 /// before its refit. The noise floors become those of the best model found.
 void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findings& findings);

@@ -15,7 +15,7 @@ namespace {
 /// below, because an error below the noise floor shows only that the noise floor is uncertain.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
   const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
-  return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
+  return 0.5 * (log_error(candidate.level.validate) + log_error(candidate.level.train)) +
          scale.further * static_cast<double>(candidate.kinds.size() - 1) +
          scale.parameter * static_cast<double>(parameters_of(candidate)) +
          scale.bound * static_cast<double>(candidate.on_bound.size());
@@ -77,8 +77,7 @@ void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   }
   const JudgedCandidate* best =
       &diagnosis.candidates[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
-  const double unexplained =
-      1.0 - std::min(explained_share(best->before, best->after), explained_in_training(*best, diagnosis));
+  const double unexplained = 1.0 - explained_by(*best, diagnosis);
   const double other = probability_of_other(unexplained, diagnosis, scale);
   double candidates = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {

@@ -22,18 +22,8 @@ namespace {
 /// limited by model error, the first is not required if the two effects need each other.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
-/// Candidates whose errors differ by less than this on both sets are not told apart.
-constexpr double kTie = 0.05;
 /// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
-
-double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
-
-/// The objective of the fits: a single late breakaway, whose time no model predicts, does not outweigh all windows that
-/// fit.
-double fitted_error(const JudgedCandidate& candidate) {
-  return std::sqrt(candidate.after_robust * candidate.train_after_robust);
-}
 
 /// The best candidate with `size` effects. One that helps only at a bound of its range is returned only if there is no
 /// other.
@@ -42,7 +32,7 @@ const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size
   const auto is_better = [&](const JudgedCandidate& candidate) {
     if (best == nullptr || candidate.on_bound.empty() != best->on_bound.empty())
       return best == nullptr || candidate.on_bound.empty();
-    return error_of_both(candidate) < error_of_both(*best);
+    return level_of_both(candidate.level) < level_of_both(best->level);
   };
   for (const JudgedCandidate& candidate : diagnosis.candidates)
     if (candidate.kinds.size() == size && is_better(candidate)) best = &candidate;
@@ -55,15 +45,13 @@ bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosi
 
 /// Whether two effects together explain more than the sum of each alone, so that neither is found alone.
 bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
-  double alone_train = 0.0, alone_validate = 0.0;
+  double alone = 0.0;
   for (const std::string& kind : pair.kinds) {
     const auto single = std::ranges::find(diagnosis.candidates, std::vector{kind}, &JudgedCandidate::kinds);
-    if (single == diagnosis.candidates.end()) continue;  // gained too little and was not fitted further
-    alone_train += std::max(0.0, explained_share(diagnosis.before_train, single->train_after));
-    alone_validate += std::max(0.0, explained_share(diagnosis.before_validate, single->after));
+    if (single != diagnosis.candidates.end())  // else it gained too little and was not fitted further
+      alone += explained_by(*single, diagnosis);
   }
-  return explained_share(diagnosis.before_train, pair.train_after) > alone_train &&
-         explained_share(diagnosis.before_validate, pair.after) > alone_validate;
+  return explained_by(pair, diagnosis) > alone;
 }
 
 /// The effect that a candidate has instead of `kind`, if all others are equal; empty otherwise.
@@ -85,7 +73,7 @@ std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate&
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
     const std::string other = exchanged_for(kind, best, candidate);
     if (other.empty() || !earns_its_place(candidate, diagnosis)) continue;
-    if (error_of_both(candidate) > (1.0 + kTie) * error_of_both(best)) continue;
+    if (level_of_both(candidate.level) > (1.0 + kTie) * level_of_both(best.level)) continue;
     if (parameters_of(candidate) > parameters_of(best)) continue;
     tied.push_back(other);
   }
@@ -107,8 +95,8 @@ const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosi
   constexpr double kNear = 0.02;
   const JudgedCandidate* simplest = best;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (candidate.kinds.size() == 1 && candidate.after <= (1.0 + kNear) * best->after &&
-        candidate.train_after <= (1.0 + kNear) * best->train_after &&
+    if (candidate.kinds.size() == 1 && candidate.level.validate <= (1.0 + kNear) * best->level.validate &&
+        candidate.level.train <= (1.0 + kNear) * best->level.train &&
         parameters_of(candidate) < parameters_of(*simplest))
       simplest = &candidate;
   return simplest;
@@ -220,10 +208,10 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   if (single != nullptr) single = simplest_near(single, diagnosis);
   const JudgedCandidate* triple = best_of_size(diagnosis, 3);
   const auto gains = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return fitted_error(more) < (1.0 - kLeastFurtherGain) * fitted_error(less);
+    return level_of_both(more.level) < (1.0 - kLeastFurtherGain) * level_of_both(less.level);
   };
   const auto explains_enough = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return explained_share(fitted_error(less), fitted_error(more)) >= kLeastFurtherShare;
+    return explained_share(level_of_both(less.level), level_of_both(more.level)) >= kLeastFurtherShare;
   };
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
                            gains(*pair, *single) &&
@@ -266,8 +254,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of the "
         "explainable error. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
-        Diagnosis::printed(*chosen).validate, 100.0 * explained_share(diagnosis.before_validate, chosen->after),
-        first.shows);
+        Diagnosis::printed(*chosen).validate, 100.0 * explained_by(*chosen, diagnosis), first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)

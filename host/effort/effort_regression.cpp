@@ -93,8 +93,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
 }
 
 double EffortRegression::confidence(const ScreenedModel& before, const ScreenedModel& after) const {
-  constexpr double kLinear = 1e12;  // large, so that no square is reduced
-  return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1, kLinear);
+  return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1);
 }
 
 EffortRegression::Prior EffortRegression::belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
@@ -176,7 +175,7 @@ SetError EffortRegression::by_block(const VectorXd& residual) const {
     if (!rows_.judges[row]) continue;
     if (error.windows.empty() || error.windows.back().window != rows_.block[row])
       error.windows.push_back({rows_.record[row], rows_.block[row]});
-    error.windows.back().effort += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
+    error.windows.back().surprise += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
   }
   return error;
 }

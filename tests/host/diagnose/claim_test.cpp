@@ -21,6 +21,7 @@ host::JudgedCandidate candidate(double before, double after, double train_after)
   judged.before = before;
   judged.after = after;
   judged.train_after = train_after;
+  judged.level = {train_after, after};
   judged.confidence = 1.0;
   judged.luck = 0.001;
   judged.model = HandMade::model();
@@ -32,6 +33,7 @@ host::Diagnosis diagnosis(double before_train, double before_validate) {
   host::Diagnosis result;
   result.before_train = before_train;
   result.before_validate = before_validate;
+  result.before_level = {before_train, before_validate};
   return result;
 }
 
@@ -78,9 +80,9 @@ TEST(Claim, TheEndOfARangeIsSeenButNotWhereAPartIsAbsent) {
   EXPECT_THAT(host::parameters_on_bound(model, {"friction_lag"}), testing::IsEmpty());
 }
 
-host::SetError errors(std::size_t windows, double square) {
+host::SetError errors(std::size_t windows, double surprise) {
   host::SetError error;
-  for (std::size_t k = 0; k < windows; ++k) error.windows.push_back({0, k, square, square});
+  for (std::size_t k = 0; k < windows; ++k) error.windows.push_back({.record = 0, .window = k, .surprise = surprise});
   return error;
 }
 

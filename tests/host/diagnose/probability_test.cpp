@@ -12,6 +12,7 @@ host::JudgedCandidate candidate(const char* kind, double after, double luck) {
   judged.kinds = {kind};
   judged.before = 20.0;
   judged.after = judged.train_after = after;
+  judged.level = {after, after};
   judged.luck = luck;
   return judged;
 }
@@ -19,6 +20,7 @@ host::JudgedCandidate candidate(const char* kind, double after, double luck) {
 host::Diagnosis diagnosis_of(std::vector<host::JudgedCandidate> candidates, double before = 20.0) {
   host::Diagnosis diagnosis;
   diagnosis.before_train = diagnosis.before_validate = before;
+  diagnosis.before_level = {before, before};
   diagnosis.candidates = std::move(candidates);
   host::assign_probabilities(diagnosis);
   return diagnosis;
