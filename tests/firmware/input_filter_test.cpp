@@ -59,7 +59,7 @@ TEST(AxisInputs, SparksTripNothingAndWhatStaysDoes) {
   };
   for (const Line& line : lines) {
     auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
-    // An optional input is the only one that is wired.
+    // Of the optional inputs, only the tested one is wired.
     p.sequence.ready_input = line.fault == AxisFault::amplifier_not_ready;
     p.sequence.amplifier_wait = p.sequence.ready_input ? 10 : 0;
     p.encoder_fault_input = line.fault == AxisFault::encoder_invalid;

@@ -51,9 +51,9 @@ printf 'export ASAN_OPTIONS=%q UBSAN_OPTIONS=%q; cd %q; exec %s\n' "${ASAN_OPTIO
   cd "$root" && find . | cpio -o -H newc -R 0:0 --quiet
 } >"$work/initrd"
 
-# Without /dev/kvm, which hangs if it is itself emulated. The guest's time follows its instructions, a thousand million
-# a second: on a loaded computer it is slow, but misses no event. Time in which it only waits is skipped; if it waits
-# for something outside, the clock counts. Emulation is fastest with a plain processor, with programs at the same
+# Without /dev/kvm, which hangs if it is itself emulated. The guest's clock counts its instructions, 10^9 a second, so
+# that the guest misses no event on a loaded computer. Idle time is skipped, except while it waits for something
+# outside. Emulation is fastest with a plain processor, with programs at the same
 # addresses each time (translated code is reused), and without calibration of the processor's timer.
 link=()
 waiting=off

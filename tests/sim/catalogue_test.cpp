@@ -109,7 +109,7 @@ TEST_P(EveryEffect, IsConfusedWithOthersThatExist) {
   for (const std::string_view other : info.confused_with) {
     EXPECT_NE(sim::find_effect(other), nullptr) << other;
     EXPECT_NE(other, info.kind);
-    EXPECT_TRUE(seen.insert(other).second) << other << " stands twice";
+    EXPECT_TRUE(seen.insert(other).second) << other << " is listed twice";
   }
 }
 

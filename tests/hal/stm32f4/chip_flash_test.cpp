@@ -66,7 +66,7 @@ TEST_F(Flash, ProtectedSectorsAreAHardwareError) {
   EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::hardware_error);
   EXPECT_EQ(flash.erase(0), FlashResult::hardware_error);
   chip.flash.is_protected = false;
-  EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an error of before does not count";
+  EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an earlier error does not count";
 }
 
 /// Each sector of the chip has its number at its beginning and its end, so the test sees which sectors are erased.

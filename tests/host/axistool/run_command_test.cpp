@@ -72,7 +72,7 @@ TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
   EXPECT_EQ(told["stopped_because"], "completed");
   EXPECT_NEAR(told["duration_s"], 1.435, 0.02);
   EXPECT_LT(told["contour_um"], 12.0);
-  EXPECT_GT(told["contour_um"], 0.5) << "an encoder of 2.4 um sees no less";
+  EXPECT_GT(told["contour_um"], 0.5) << "an encoder of 2.4 um cannot show a smaller error";
   const host::Record record = host::read_record(file("c.csv"));
   EXPECT_NEAR(*std::max_element(record.x.begin(), record.x.end()), 70.0, 0.05);
   EXPECT_NEAR(record.x.back(), 0.0, 0.02) << "it ends where it began";

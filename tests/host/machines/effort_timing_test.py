@@ -74,8 +74,8 @@ class EffortTiming(logged.Log):
                 self.assertIn(diagnosis["verdict"]["status"], ("adequate", "parameters"))
 
     def test_an_error_of_the_encoder_does_not_move_the_instant(self) -> None:
-        # Beside inertia and friction alone it does, and what that leaves at steps of the torque looks like a spring.
-        # It moves the inertia as well, by which the error's amplitude is fitted.
+        # In a fit of inertia and friction alone it would, and the residual at steps of the torque would look like a
+        # spring. It would also bias the inertia, and with it the amplitude of the error.
         for name, log in self.logs.items():
             read = [(effort, x + 0.01 * math.sin(4.0 * x + 1.0)) for effort, x in log]
             self.write(name, shifted(read, -0.25), NOISE_A)
@@ -86,7 +86,7 @@ class EffortTiming(logged.Log):
         self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 3.0)
 
     def test_intervals_hold_the_truth(self) -> None:
-        # Not the inertia: its interval, 0.03 % wide, is narrower than the bias of filters and differences.
+        # Except the inertia, whose interval of 0.03 % is narrower than the bias by filters and differences.
         names = ["B_Nm_s_per_rad", "positive_Nm", "negative_Nm", "effort_timing"]
         hits = dict.fromkeys(names, 0)
         for seed in range(SEEDS):

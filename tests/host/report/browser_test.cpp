@@ -158,7 +158,7 @@ TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
   EXPECT_EQ(seen["charts"], 4);
   EXPECT_EQ(seen["fetched"], 0);
   EXPECT_THAT(seen["title"].get<std::string>(), testing::StartsWith("Drive </script><script>"))
-      << "user text stands in the title as text";
+      << "user text is shown in the title as text";
   for (const nlohmann::json& chart : seen["pixels"]) {
     for (const nlohmann::json& pixels : chart) EXPECT_GT(pixels.get<int>(), 30) << seen["pixels"];
   }
