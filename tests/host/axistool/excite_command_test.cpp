@@ -144,7 +144,7 @@ TEST_P(ExciteACoggingAxis, GoesOnWhereItHangs) {
   }
   const ProgramRun weak = excite("x steps --yes --box travel=40,speed=150,volts=0.15,time=5 --drive " + data_sheet());
   EXPECT_EQ(weak.exit_code, 8);
-  EXPECT_THAT(weak.output, HasSubstr("nothing moved")) << "and what never moves is told";
+  EXPECT_THAT(weak.output, HasSubstr("nothing moved")) << "an axis that never moves is reported";
 }
 
 }  // namespace

@@ -188,10 +188,10 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
     EXPECT_EQ(terminal.wait(), 0);
     std::ifstream in(file("run.json"));
     const auto told = nlohmann::json::parse(in);
-    EXPECT_LT(told["contour_um"], 12.0) << "on the path at any speed";
+    EXPECT_LT(told["contour_um"], 12.0) << "the axes stay on the path at any speed";
     return host::read_record(file("run.csv")).t_s.back() / told["planned_s"].get<double>();
   };
-  EXPECT_NEAR(duration("+++<<<<<<<<<<>"), 1.0, 0.05) << "no feed above the plan; no rapid in it";
+  EXPECT_NEAR(duration("+++<<<<<<<<<<>"), 1.0, 0.05) << "feeds stay at the planned speed, and the program has no rapid";
   const double slowed = duration("-----");
   EXPECT_GT(slowed, 1.2);
   EXPECT_LT(slowed, 2.05);

@@ -19,7 +19,7 @@ import logged_machines_test as logged
 SEEDS = int(os.environ.get("SEEDS", "16"))
 TRUTH = {"J_kg_m2": 0.004, "B_Nm_s_per_rad": 0.008, "positive_Nm": 0.3, "negative_Nm": -0.3}
 NOISE_A = 0.02
-# Half a sample minus half of a fortieth: in each small step the machine moves at the step's final speed.
+# samples: half of one, minus half of an integration step of 1/40, which moves the machine at the step's final speed
 HELD = 0.4875
 
 
@@ -33,7 +33,7 @@ def pushes(seed: int, rows: int):
 
 
 def shifted(log, samples):
-    """The log of a logger that averages the torque of each row over a period beginning `samples` samples later."""
+    """The log if each row holds the mean torque of the period that begins `samples` samples after the row."""
     whole, part = math.floor(samples), samples - math.floor(samples)
     
     def at(row: int) -> float:

@@ -52,7 +52,7 @@ TEST(CutRecord, WhatIsCutOffNeedNotBeARecord) {
   const std::string gap = text.substr(0, text.find("\n0.2,") + 1) + text.substr(text.find("\n0.25,") + 1);
   EXPECT_THROW(host::parse_record(gap, "r.csv"), host::Failure);
   EXPECT_EQ(cut(gap, 0.25, 1.0).size(), 150u);
-  EXPECT_THROW(cut(gap, 0.1, 0.3), host::Failure) << "a gap within is none the less";
+  EXPECT_THROW(cut(gap, 0.1, 0.3), host::Failure) << "a gap within the part is still refused";
 }
 
 TEST(CutRecord, TooLittleIsRefused) {
