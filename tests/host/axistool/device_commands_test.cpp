@@ -237,6 +237,7 @@ TEST_F(DeviceCommands, TellAboutTheBoard) {
   EXPECT_EQ(info["format"], "axis-board/1");
   EXPECT_TRUE(info["simulated"].get<bool>());
   EXPECT_EQ(info["axes"][0]["state"], "not fitted");
+  EXPECT_THAT(run("capture x -o " + file("raw.csv") + " --for 0.1").output, HasSubstr("axis x is not fitted"));
   const nlohmann::json doctor = json("doctor");
   for (const auto& check : doctor["checks"]) EXPECT_NE(check["result"], "bad") << check;
   const nlohmann::json bench = json("bench --for 1");
@@ -283,6 +284,13 @@ TEST(DeviceOption, NamesWhatItTakes) {
   EXPECT_EQ(odd.exit_code, 2);
   EXPECT_THAT(odd.output, AllOf(HasSubstr("usb:SERIAL"), HasSubstr("socket:PATH")));
   EXPECT_THAT(run_axistool("info --device socket:/nowhere/at/all").output, HasSubstr("axistool sim"));
+}
+
+/// Catches a doctor that only repeats that it has found no board.
+TEST(Doctor, SaysWhatToCheckWhereNoBoardAnswers) {
+  const ProgramRun none = run_axistool("doctor --device usb:NOWHERE");
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.output, AllOf(HasSubstr("cable"), HasSubstr("udev rule"), HasSubstr("axistool sim")));
 }
 
 }  // namespace
