@@ -90,7 +90,7 @@ TEST(LostPeriods, EndInAStopAlongTheRamp) {
   EXPECT_EQ(axis.axis.state(), firmware::SupervisorState::stopping);
   for (int k = 0; k < 1000; ++k) axis.step();
   EXPECT_EQ(axis.axis.fault(), AxisFault::control_overrun);
-  EXPECT_EQ(axis.axis.latched().second(), AxisFault::none) << "the feedback is sound";
+  EXPECT_EQ(axis.axis.latched().second(), AxisFault::none) << "no fault of the feedback is reported";
   EXPECT_LT(axis.at_mm() - begin, 250.0 * (0.125 + 0.04) / 2 + 1.0) << "the ramp's own way";
   EXPECT_NEAR(static_cast<double>(axis.axis.telemetry().encoder_counts) * firmware_test::kEncoderResolution_mm,
               axis.at_mm(), 0.01)

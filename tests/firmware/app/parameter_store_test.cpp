@@ -77,7 +77,7 @@ TEST(ParameterStore, ReturnsTheLastOfManySaves) {
     EXPECT_EQ(found.report.state, StoreState::loaded);
     EXPECT_EQ(found.values, generation(i));
     EXPECT_EQ(found.report.sequence, static_cast<std::uint32_t>(i));
-    EXPECT_EQ(found.report.erases, static_cast<std::uint32_t>(i)) << "each save wears one sector once";
+    EXPECT_EQ(found.report.erases, static_cast<std::uint32_t>(i)) << "each save erases one sector once";
   }
 }
 

@@ -67,7 +67,7 @@ TEST_F(Converter, ABrownOutThatLosesItsRangeIsFound) {
   EXPECT_EQ(converter.state(), ConverterState::registers_differ);
   EXPECT_FALSE(converter.a().is_healthy());
   EXPECT_FALSE(converter.b().is_healthy());
-  EXPECT_TRUE(converter.start()) << "started anew it is sound";
+  EXPECT_TRUE(converter.start()) << "it is sound after a new start";
   EXPECT_TRUE(converter.a().is_healthy());
 }
 

@@ -132,7 +132,7 @@ TEST_F(Compare, SeveralModelsStandBesideEachOther) {
   ASSERT_EQ(both["models"].size(), 2u);
   EXPECT_LT(both["models"][0]["combined"], both["models"][1]["combined"]);
   const auto alone = nlohmann::json::parse(run_axistool("compare " + other + " " + record + " --json -", "").output);
-  EXPECT_EQ(both["models"][1]["channels"], alone["channels"]) << "company changes no figure";
+  EXPECT_EQ(both["models"][1]["channels"], alone["channels"]) << "a second model changes no figure of the first";
   EXPECT_EQ(both["combined"], both["models"][0]["combined"]);
   EXPECT_THAT(host::read_file(report), HasSubstr("\"name\":\"heavy.toml\""));
 }

@@ -217,7 +217,7 @@ TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
   board_.end(SIGKILL);
   EXPECT_EQ(capture.wait(), 3);
   EXPECT_FALSE(std::filesystem::exists(file("long.csv")));
-  EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "what came is on disk";
+  EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "the received rows are on disk";
   EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
 }
 

@@ -141,7 +141,7 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   const auto told = nlohmann::json::parse(in);
   EXPECT_EQ(told["stopped_because"], "interrupted");
   EXPECT_LT(told["duration_s"], 40.0);
-  EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
+  EXPECT_LT(told["contour_um"], 12.0) << "also while it stops";
 }
 
 /// Runs a program on a pseudo-terminal and types keys.

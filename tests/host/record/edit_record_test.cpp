@@ -41,7 +41,7 @@ TEST(CutRecord, KeepsTheRowsBetweenTheTimesAndTheirStamps) {
   EXPECT_EQ(part.w.front(), speed(0.1));
   EXPECT_THAT(part.header.at("cut"), HasSubstr("r.csv"));
   const host::Record again = cut(host::format_record(part), 0.1, 0.15);
-  EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "both cuts are told";
+  EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "the header states both cuts";
 }
 
 /// Messages recommend to cut a record at a fault, so the fault must not prevent the cut.
