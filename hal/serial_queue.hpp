@@ -9,7 +9,7 @@
 namespace hal {
 
 /// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` passes on the bytes that
-/// the line accepts: call it at least once per character time. One caller for both.
+/// the line accepts: call it at least once per character time. Call both from the same context.
 template <SerialLine Line, std::size_t size>
 class SerialQueue {
  public:

@@ -42,7 +42,7 @@ fs::path end_of_links(const std::string& name) {
     if (fault) fail(ExitCode::permission, "{}: cannot follow the link: {}", name, fault.message());
     path = next.is_absolute() ? next : path.parent_path() / next;
   }
-  fail(ExitCode::usage, "{}: the link leads in a circle; name another file", name);
+  fail(ExitCode::usage, "{}: the link refers to itself; name another file", name);
 }
 
 void require_rights(const fs::path& path, int rights, const std::string& name, const char* what) {
@@ -57,7 +57,7 @@ void require_writable_folder(const fs::path& folder, const std::string& name) {
     fail(ExitCode::bad_input, "{}: folder {} does not exist ({}); make it first, or name another", name,
          folder.string(), std::strerror(errno));
   if (!S_ISDIR(found.st_mode))
-    fail(ExitCode::bad_input, "{}: {} is no folder; name another place", name, folder.string());
+    fail(ExitCode::bad_input, "{}: {} is not a folder; name another place", name, folder.string());
   require_rights(folder, W_OK | X_OK, name, "its folder");
 }
 
@@ -74,18 +74,17 @@ std::string output_target(const std::string& path) {
   const fs::path target = end_of_links(path);
   struct stat found {};
   if (::stat(target.c_str(), &found) == 0) {
-    if (S_ISDIR(found.st_mode)) fail(ExitCode::usage, "{}: a folder of this name is there; name a file", path);
+    if (S_ISDIR(found.st_mode)) fail(ExitCode::usage, "{}: this is a folder; name a file", path);
     if (!S_ISREG(found.st_mode))
       fail(ExitCode::usage, "{}: not a regular file, and outputs replace files as a whole; name a file", path);
     if (protected_inputs().contains({found.st_dev, found.st_ino}))
-      fail(ExitCode::usage, "{}: this is an input of the command, and nothing overwrites one; name another output",
-           path);
+      fail(ExitCode::usage, "{}: this is an input of the command and is never overwritten; name another output", path);
     require_rights(target, W_OK, path, "the file");
   } else if (errno != ENOENT && errno != ENOTDIR) {
     fail(errno == EACCES ? ExitCode::permission : ExitCode::bad_input, "{}: cannot be written: {}; name another file",
          path, std::strerror(errno));
   }
-  if (!target.has_filename()) fail(ExitCode::usage, "{}: the name of a folder; name a file", path);
+  if (!target.has_filename()) fail(ExitCode::usage, "{}: this names a folder; name a file", path);
   require_writable_folder(target.has_parent_path() ? target.parent_path() : fs::path("."), path);
   return target.string();
 }

@@ -41,7 +41,7 @@ std::string own_folder(const char* variable, const std::string& below_home) {
   std::string folder = variable_or(variable, "");
   if (folder.empty()) {
     const std::string from = home();
-    if (from.empty() || from == "/") refuse("no home folder", "files of this user have no place", variable);
+    if (from.empty() || from == "/") refuse("no home folder", "there is no place for your files", variable);
     folder = from + "/" + below_home;
     make(folder);
   }

@@ -31,11 +31,11 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child() { kill(); }
 
-  /// Does not run on, until it is killed.
+  /// Stops it until go_on() or its end.
   void pause() const { ::kill(process_, SIGSTOP); }
   void go_on() const { ::kill(process_, SIGCONT); }
   void signal(int number) const { ::kill(process_, number); }
-  /// Its exit code, once it has ended; the signal's number, negative, where one ended it.
+  /// Waits for its end; returns its exit code, or minus the number of the signal that ended it.
   int wait() {
     int status = 0;
     waitpid(process_, &status, 0);
@@ -43,7 +43,7 @@ class Child {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
 
-  /// Sends `signal`; returns as wait() does. SIGTERM is an orderly end, SIGKILL a pulled plug.
+  /// Sends `signal`; returns as wait() does. SIGTERM is an orderly end, SIGKILL like a pulled plug.
   int end(int signal) {
     if (process_ <= 0) return 0;
     ::kill(process_, signal);

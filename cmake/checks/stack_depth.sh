@@ -53,7 +53,7 @@ find "$folder" -name '*.ci' -exec cat {} + | awk -v limit="$limit" -v roots="$*"
       for (f in frame) if (index(f, behind_pointer[i])) { found = 1; d = depth(f); if (d > most) most = d }
       if (!found) complain("no function " behind_pointer[i] " in the call graph")
     }
-    if (!pointed) complain("a call through a pointer, to nobody knows where")
+    if (!pointed) complain("a call through a pointer with unknown targets")
     return most
   }
   END {

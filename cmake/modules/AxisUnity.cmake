@@ -7,8 +7,8 @@ option(AXIS_UNITY "Compile the sources of a folder together" OFF)
 
 # axis_unity(OUT SOURCE...): sets OUT to the files to compile: the sources themselves, or files that include at most
 # AXIS_UNITY_SOURCES of a folder. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION, stays by
-# itself. Folders of AXIS_HOT_FOLDERS and separate sources compute: -O2. All others read, write and wait: -O1, which
-# compiles them in two thirds of the time.
+# itself. AXIS_HOT_FOLDERS and separate sources, which compute, get -O2. All others get -O1, which takes two thirds of
+# the compile time.
 set(AXIS_UNITY_SOURCES 30)
 set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer scale simulated_board)
 function(axis_unity OUT)

@@ -20,14 +20,14 @@ fail() {
   exit 1
 }
 
-command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || fail "this is no Debian system"
+command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || fail "this is not a Debian system"
 mkdir -p "$folder"
 work=$(mktemp -d -p "$folder")
 trap 'rm -rf "$work"' EXIT
 work=$(readlink -f "$work")
 mkdir -p "$work/state/lists/partial" "$work/cache/archives/partial"
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Label: Debian' | head -n 1)
-[ -n "$mirror" ] || fail "apt knows no mirror of Debian: apt-get update first"
+[ -n "$mirror" ] || fail "apt has no Debian mirror: run apt-get update first"
 keys=/usr/share/keyrings/debian-archive-keyring.gpg
 [ -r $keys ] || fail "$keys is missing: apt-get install debian-archive-keyring"
 echo "deb [signed-by=$keys] $mirror $suite main" >"$work/sources.list"

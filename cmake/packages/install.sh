@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the Debian packages that this machine lacks of the lists named: install.sh build test
+# install.sh LIST...: installs the Debian packages of these lists that are missing, e.g. install.sh build test
 # Silent and quick if nothing is missing.
 set -eu
 
@@ -12,7 +12,7 @@ listed() {
 }
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
-  echo "packages: this is no Debian system; its equivalents of these must be present:" $(listed "$@") >&2
+  echo "packages: this is not a Debian system; install the equivalents of:" $(listed "$@") >&2
   exit 0
 fi
 
@@ -37,14 +37,14 @@ elif command -v sudo >/dev/null 2>&1 && { [ -t 0 ] || sudo -n true 2>/dev/null; 
   as_root=sudo
 else
   echo "packages: missing:$missing" >&2
-  echo "packages: neither root nor sudo is at hand. Let an administrator run this once, then repeat:" >&2
+  echo "packages: this needs root or sudo. Let an administrator run this once, then repeat:" >&2
   echo "  apt-get update && apt-get install --no-install-recommends$missing" >&2
   exit 1
 fi
 
 echo "packages: installing$missing"
 apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=600 -qq"
-$apt update </dev/null || echo "packages: the package index could not be refreshed; trying with the one at hand" >&2
+$apt update </dev/null || echo "packages: the package index could not be updated; trying with the old one" >&2
 if ! $apt install -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing </dev/null >/dev/null; then
   echo "packages: installation failed; see above. By hand: apt-get install --no-install-recommends$missing" >&2
   exit 1

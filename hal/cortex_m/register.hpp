@@ -22,7 +22,7 @@ class AnsweredRegister {
   AnsweredRegister() = default;
   AnsweredRegister(const AnsweredRegister&) = delete;
 
-  // NOLINTBEGIN(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment): a volatile's returns nothing
+  // NOLINTBEGIN(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment): as for a volatile Word
   void operator=(std::uint32_t value) { answer_write(address(), sizeof(Word), value); }
   void operator=(const AnsweredRegister& other) { *this = std::uint32_t{static_cast<Word>(other)}; }
   // NOLINTEND(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment)

@@ -13,7 +13,7 @@ struct BrakeWiring {
   double apply_time_s = 0.05;    ///< from switching the current off until the brake holds
 };
 
-/// Initially applied, for a long time already. Either its whole torque acts or none.
+/// Initially fully applied. Either its whole torque acts or none.
 class SimulatedBrake {
  public:
   SimulatedBrake(sim::Plant& plant, const BrakeWiring& wiring)
@@ -28,7 +28,7 @@ class SimulatedBrake {
            (is_released_ ? since_s_ < wiring_.release_time_s : since_s_ >= wiring_.apply_time_s);
   }
 
-  /// After the plant has advanced by `duration_s` from the travel `x` and the speed `w`.
+  /// Call it after the plant has advanced by `duration_s` from the travel `x` and the speed `w`.
   void act(double x, double w, double duration_s) {
     if (holds()) {
       sim::DriveState& truth = plant_.truth();

@@ -304,7 +304,7 @@ MatrixXd at_samples(const std::vector<CirclePass>& passes, const CircleCause& ca
 
 double range_of(const VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
-/// The largest amplitude, for waves and spikes.
+/// Size of a cause: the amplitude of a wave, the largest value of a spike, else its factor.
 double amount_of(const CircleCause& cause, const VectorXd& factors, double um) {
   if (cause.period_mm || cause.frequency_Hz) return 0.5 * um;
   if (cause.kind == "reversal_spike") return um;

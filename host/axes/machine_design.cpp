@@ -186,8 +186,8 @@ void limit(LoopSet& set, const std::vector<AxisTask>& tasks, LimitWishes wishes)
   }
 }
 
-/// What an axis that stops the matched loop below its own bandwidth has to share: the filters, if it would go further
-/// with its own ones, or the estimator.
+/// Why an axis limits the matched loop below its own bandwidth: the common filters, if its own ones would allow more,
+/// otherwise the common estimator.
 std::string shared_cause(const LoopTask& task, const AxisLoop& own, const LoopAim& aim, double matched_Hz) {
   const bool by_filters = highest_bandwidth({task}, aim, own.filters).bandwidth_Hz > matched_Hz;
   return fmt::format("with the {} of all axes; its own loop reaches {:.3g} Hz", by_filters ? "filters" : "estimator",

@@ -56,7 +56,7 @@ class Comparison {
       add("loop", fmt::format("with the tuned {} alone", tuned_part), "loop-params.toml", is_tuned,
           session_.design(before, raised_loop(session_, before, tuned), "loop-params.toml"));
     }
-    // The estimator was tuned on shorter jogs: take it back if it gains nothing on these.
+    // The estimator was tuned on shorter jogs, so the first one is tried on these as well.
     if (is_tuned)
       add("untuned", "with the better model and the first estimator", "untuned-params.toml", false,
           session_.design(after, raised_loop(session_, after, first), "untuned-params.toml"));
@@ -82,7 +82,8 @@ class Comparison {
            std::max(one.spread(), other.spread());
   }
 
-  /// Whether the tuned estimator makes the axis softer than the first one does, where no force says what that costs.
+  /// Whether the tuned estimator makes the axis softer than the first one does. Not checked if a process force is
+  /// given: that decides.
   bool is_too_soft(const Trial& trial) const {
     const auto untuned = std::ranges::find(trials_, "untuned", &Trial::name);
     return trial.is_tuned && !session_.options().force_N && untuned != trials_.end() &&
@@ -115,7 +116,7 @@ class Comparison {
   /// The kept set; if it is the old one, the last that was tried.
   const Trial& after() const { return is_new() ? kept() : trials_.back(); }
 
-  /// Selects the set that stays on the board: none that may stay is better by is_better().
+  /// Selects the set that stays on the board: the best of the permitted ones, by is_better().
   void decide(bool was_fitted) {
     for (std::size_t i = 0; i < trials_.size(); ++i)
       if (!is_too_soft(trials_[i]) && is_better(trials_[i], kept())) kept_ = i;
@@ -169,13 +170,13 @@ class Comparison {
       said += trial.is_whole() ? fmt::format(", {:.3g} {}", trial.mean(), trial.what)
                                : fmt::format(", and {} the axis stopped: {}", trial.what, trial.stopped_because);
     }
-    said += is_new() ? "." : ": no set that may stay gains more than equal runs differ.";
+    said += is_new() ? "." : ": no permitted set improves on it by more than equal runs differ.";
     said += fmt::format(" Least stiffness against a process force: {:.3g} N/µm before", before().least_N_um());
     if (is_new()) said += fmt::format(", {:.3g} now", kept().least_N_um());
     said += ".";
     for (const Trial& trial : trials_)
       if (is_too_soft(trial))
-        said += fmt::format(" The set {} may not stay: the tuned estimator makes the axis softer, {:.3g} N/µm.",
+        said += fmt::format(" The set {} is not permitted: its estimator makes the axis softer, {:.3g} N/µm.",
                             trial.what, trial.least_N_um());
     return said + fmt::format(" The {} is on the board{}.", is_new() ? "set " + kept().what : "old set",
                               session_.options().save ? ", and saved"

@@ -47,15 +47,14 @@ double command_noise_V(const Record& once, const Record& again);
 /// amplitude at the frequency where the axis is softest.
 double deviation_um(double error_um, const Compliance& compliance, std::optional<double> force_N);
 
-/// By more than loops differ whose bandwidths are one step of highest_bandwidth() apart.
+/// Whether `one` is softer by more than one step of highest_bandwidth() makes it.
 bool is_softer(const Compliance& one, const Compliance& other);
 
-/// `tests`: in the order of rising Rwd. Of the values that the demand allows, takes the calmest one whose deviation
-/// exceeds the least one by no more than equal runs differ: noise of the command counts by the motion that it causes,
-/// and beyond that point it buys nothing. A larger Rwd rejects disturbances better (p. 1503), which the following error
-/// without a process does not show. At a given margin, compliance and noise trade one for one over decades of Rwd, so
-/// that their curve has no corner: a force sets the exchange, by the deviation under it; without one, no value may make
-/// the axis softer than the first estimator does.
+/// `tests`: in the order of rising Rwd. Chooses among the values that the demand allows: the least noisy one whose
+/// deviation equals the smallest one within the difference of equal runs. A larger Rwd rejects disturbances better
+/// (p. 1503), but the following error shows that only under a process force. At a given margin, compliance falls as
+/// noise grows over decades of Rwd, so no value of Rwd stands out. The deviation under a given force therefore decides.
+/// Without a force, no value may make the axis softer than the first estimator does.
 EstimatorChoice choose_estimator(const std::vector<TrackingTest>& tests, const EstimatorDemand& demand);
 
 /// {"tried": [...], "chosen_V2", "why", …}; figures of unusable values are null.

@@ -284,8 +284,8 @@ void add_estimator(Report& report, const Page& page) {
       tests["why"].get<std::string>() +
           ". A larger Rwd makes the estimate of the disturbance faster, so that process forces move the axis "
           "less, and the command noisier (Erkorkmaz & Altintas 2001, p. 1503). Stiffness: least force on the "
-          "table per amplitude of the position, over the measured frequencies. At one margin, noise grows "
-          "about as stiffness does, so that the two alone favour no value. " +
+          "table per amplitude of the position, over the measured frequencies. At a given margin, noise grows "
+          "about as fast as stiffness, so these two alone favour no value. " +
           (tests["force_N"].is_number()
                ? "The given force decides: the calmest value with the least deviation under it. "
                : "No process force was given (--force), so no value may make the axis softer than the first "

@@ -22,7 +22,7 @@ constexpr std::array kFactors = {0.01, 0.1, 1.0, 10.0, 100.0};  // of the first 
 constexpr double kRuns = 2.0 * static_cast<double>(kFactors.size());
 constexpr const char* kFile = "estimator.json";
 
-/// Variance of the tachometer, (rad/s)^2 ((m/s)^2). It changes between measurements, so that the larger is designed for
+/// Variance of the tachometer, (rad/s)^2 ((m/s)^2). It changes between measurements; the design uses the larger value
 /// (p. 1503).
 struct TachometerNoise {
   std::optional<double> at_rest;  ///< eq. (46); empty if no record shows a rest
@@ -73,8 +73,8 @@ class EstimatorStep {
  private:
   static constexpr double kLeft = 12.0;  // jogs of the last comparison: five sets twice, and a reserve of two
 
-  /// Of the noise that must not take the command into saturation, for which the linear design does not hold (p. 1490):
-  /// 99.7 % of a normal distribution.
+  /// The command must not saturate, because the design is linear (p. 1490): this many standard deviations of its noise
+  /// must fit, 99.7 % of a normal distribution.
   static constexpr double kDeviations = 3.0;
 
   Compliance compliance_of(const CommissionLoop& loop) const {

@@ -324,7 +324,7 @@ const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
     // short.
     if (region.partition == "event" && (share < kStretchShare || portion > kEventPortion)) continue;
     if (region.partition == "place" && share < kStretchShare) continue;
-    if (share < kLeastShare || portion <= 0.0 || portion >= share) continue;
+    if (share < kLeastShare || portion <= 0.0 || portion >= std::min(share, region.share)) continue;
     const double surprise = share * std::log(share / portion);
     if (surprise > most) {
       most = surprise;

@@ -28,7 +28,8 @@ struct ErrorRegion {
 std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const RecordSet& set);
 
 /// The region with the most error in the fewest samples; null if all errors are at the noise floor. Uses the magnitude
-/// of the error, because with the square one late breakaway would outweigh recurring errors.
+/// of the error, because with the square one late breakaway would outweigh recurring errors. The share of the square,
+/// which is the one in the text, must also exceed that of the samples.
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions);
 
 /// "the model fails in the first 50 µm after a reversal (41 % of the squared error in 3 % of the samples)".

@@ -105,7 +105,7 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
   if (envelope == Status::wrong_version)
     fail(ExitCode::protocol, fmt::format("the board speaks version {} of the protocol, this axistool version {}",
                                          static_cast<unsigned>((*report)[0]), firmware::kProtocolVersion));
-  fail(ExitCode::protocol, "a report arrived damaged (checksum): try again, and another cable or port");
+  fail(ExitCode::protocol, "a report arrived damaged (checksum): try again, then another cable or port");
 }
 
 std::string BoardClient::other_users() const { return host::other_users(link_->file()); }
@@ -138,7 +138,7 @@ BoardState BoardClient::status() {
     std::memcpy(&part, reply.payload.data(), reply.length);
     if (part.board.axis_count == 0 || part.board.axis_count > hal::kMostAxes ||
         (!state.axis.empty() && part.board.axis_count != state.axis_count))
-      fail(ExitCode::protocol, fmt::format("the board says that it has {} axes", part.board.axis_count));
+      fail(ExitCode::protocol, fmt::format("the board reports {} axes", part.board.axis_count));
     static_cast<firmware::BoardStatus&>(state) = part.board;
     state.axis.insert(state.axis.end(), part.axis.begin(), part.axis.begin() + static_cast<std::ptrdiff_t>(axes));
   } while (state.axis.size() < state.axis_count);
@@ -150,8 +150,7 @@ std::size_t BoardClient::axis_count() {
   if (axis_count_ != 0) return axis_count_;
   const std::size_t axes = identify().axis_count;
   if (axes == 0 || axes > hal::kMostAxes)
-    fail(ExitCode::protocol,
-         fmt::format("the board says that it has {} axes, but 1 to {} are possible", axes, hal::kMostAxes));
+    fail(ExitCode::protocol, fmt::format("the board reports {} axes, but 1 to {} are possible", axes, hal::kMostAxes));
   return axis_count_ = axes;
 }
 

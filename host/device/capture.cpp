@@ -208,7 +208,7 @@ void require_no_loss(const Capture& capture, const std::string& where) {
 
 std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels) {
   if (samples.words.size() % channels != 0)
-    throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
+    throw Failure(ExitCode::protocol, "the board sends rows of another length than requested");
   return samples.words.size() / channels;
 }
 

@@ -146,7 +146,7 @@ class Examination {
 }  // namespace
 
 DeviceCheck check_opening() {
-  if (usb_polls_always()) return {CheckResult::good, "opening", "at once: Linux polls boards always", ""};
+  if (usb_polls_always()) return {CheckResult::good, "opening", "at once: Linux polls boards permanently", ""};
   return {CheckResult::attention, "opening", "each command waits 50 ms before it may talk to the board over hidraw",
           "`sudo axistool udev-rule --poll-always --install`, then restart the computer"};
 }

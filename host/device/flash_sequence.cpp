@@ -82,7 +82,7 @@ std::vector<FlashStep> dfu_steps(const FlashRequest& request) {
 }
 
 constexpr const char* kLevelNotTaken =
-    "the chip did not take the level of its brown-out reset: the image was not written; try again, or set it by ST's "
+    "the chip kept its old brown-out level, so the image was not written: try again, or set the level by ST's "
     "programmer (STM32_Programmer_CLI -ob BOR_LEV=0)";
 
 [[noreturn]] void refuse_protected() {

@@ -83,17 +83,19 @@ class PitchFile {
     const std::size_t place = *place_of(what);
     const auto value = parse_number(fields_[place]);
     if (!value || !std::isfinite(*value))
-      fail(what, fmt::format("'{}' is not a number: decimal point, no blanks in it", fields_[place].substr(0, 40)));
+      fail(what, fmt::format("'{}' is not a number; write it with a decimal point and without blanks",
+                             fields_[place].substr(0, 40)));
     const double parts = *value * columns_[place].mm / count_mm_ * per_count;
     if (!(std::abs(parts) <= most))
-      fail(what, fmt::format("{} is more than {:g} mm, which the board can hold: is the unit right?",
+      fail(what, fmt::format("{} is more than the {:g} mm that the board can store: check the unit",
                              fields_[place].substr(0, 40), most / per_count * count_mm_));
     return static_cast<std::int32_t>(std::lround(parts));
   }
 
   void take_row() {
     if (fields_.size() != columns_.size())
-      fail("", fmt::format("{} fields, the header has {}: one per column", fields_.size(), columns_.size()));
+      fail("",
+           fmt::format("{} fields, but the header has {}: give one field per column", fields_.size(), columns_.size()));
     if (points_.size() == firmware::kMostPitchPoints)
       fail("",
            fmt::format("more than {} rows: leave some out where the screw is straight", firmware::kMostPitchPoints));
@@ -107,9 +109,9 @@ class PitchFile {
     point.backward = place_of("error") ? point.forward : deviation("backward");
     if (!points_.empty() && point.counts <= points_.back().counts)
       fail("x",
-           "not above the row before: give one row per position in rising order, the mean of repeated measurements");
+           "not above the previous row: give one row per position, in ascending order; average repeated measurements");
     if (!points_.empty() && !may_follow(points_.back(), point))
-      fail("x", "the deviation changes by more than 1/64 of the way from the row before: is the unit right?");
+      fail("x", "the deviation changes by more than 1/64 of the travel since the previous row: check the unit");
     points_.push_back(point);
   }
 

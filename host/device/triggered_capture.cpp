@@ -231,7 +231,7 @@ BoardTrigger parse_board_trigger(std::string_view text, sim::DriveKind kind) {
                               text));
   }
   if (trigger.axis == firmware::kAnyAxis && trigger.kind != TriggerKind::fault)
-    throw Failure(ExitCode::usage, fmt::format("{}: only a fault may be that of any axis", text));
+    throw Failure(ExitCode::usage, fmt::format("{}: 'any' is possible only for a fault; name an axis", text));
   return trigger;
 }
 

@@ -42,7 +42,7 @@ DesignOptions complete(const DesignOptions& options, const sim::DataSheet& data)
     used.tach_variance.reset();
   }
   positive_or_default(options.disturbance_variance, 0.0, "--rwd",
-                      "larger follows disturbances faster, smaller is calmer");
+                      "a larger value follows disturbances faster, a smaller one has less noise");
   positive_or_default(options.damping, 0.0, "--zeta", "0.7 is usual");
   if (!(data.sample_period_s > 0.0)) refuse("the model's sample_period_s must be greater than zero");
   if (!(options.bandwidth_Hz > 0.0) || options.bandwidth_Hz >= 0.5 / data.sample_period_s) {

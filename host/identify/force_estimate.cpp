@@ -76,7 +76,7 @@ void add_process_force(Record& record, const sim::DriveDescription& model,
   const ForceEstimate stated = force_estimate(design, model.data);
   const std::vector<double> known_V = known_disturbance_V(record, model);
   ExtraChannel force{kProcessForce, std::vector<double>(record.size()), {}};
-  // The estimate of a row is of the period before it, whose feed-forward was that of the reference now.
+  // The estimate in row k is that of the previous period, whose feed-forward used the reference of row k.
   for (std::size_t k = 0; k < record.size(); ++k)
     force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_V[k == 0 ? 0 : k - 1] - known_V[k]);
   record.extra.push_back(std::move(force));

@@ -6,8 +6,8 @@
 
 namespace host {
 
-/// The disturbance holds friction and process force, eq. (2). With friction feed-forward the estimator does not see the
-/// identified friction, so that the board's channel d_hat_V is the process force and what the friction model misses.
+/// The disturbance contains friction and process force, eq. (2). With friction feed-forward, the board's channel
+/// d_hat_V contains only the process force and the error of the friction model.
 struct ForceEstimate {
   double newton_per_V = 0.0;  ///< force on the table
   double band_N = 0.0;        ///< half width of the 95 % interval from the noise of sensors and converter

@@ -78,14 +78,14 @@ std::vector<std::string> notes_of(const sim::DriveDescription& model, std::strin
                                   const Record* record) {
   std::vector<std::string> notes{
       fmt::format("{}: model {} for {}, by axistool export", model.name.empty() ? "axis" : model.name, model.name, to)};
-  if (exported.not_expressed.empty()) notes.emplace_back("Everything in the model is expressed here.");
+  if (exported.not_expressed.empty()) notes.emplace_back("This file expresses the whole model.");
   for (const NotExpressed& left_out : exported.not_expressed)
     notes.push_back(fmt::format("Not expressed: {}{}", left_out.kind,
                                 left_out.share
                                     ? fmt::format(", {:.2g} % of the squared effort of {}", 100.0 * *left_out.share,
                                                   std::filesystem::path(record->path).filename().string())
-                                : record != nullptr ? ", of which the effort alone does not tell the size"
-                                                    : ", of a size that export --record RECORD tells"));
+                                : record != nullptr ? ", whose size does not follow from the effort alone"
+                                                    : "; export --record RECORD computes its size"));
   return notes;
 }
 
@@ -119,8 +119,8 @@ Export export_model(const sim::DriveDescription& model, ExportTarget target, con
   const std::filesystem::path file(path);
   const std::string component = identifier(file.stem().string());
   if (target == ExportTarget::linuxcnc && file.filename() != component + ".comp")
-    notes.push_back(
-        fmt::format("halcompile takes a file that is named as its component: name this one {}.comp.", component));
+    notes.push_back(fmt::format(
+        "halcompile requires the file name to be the component's name: rename this file to {}.comp.", component));
   switch (target) {
     case ExportTarget::mjcf:
       exported.files.push_back({path, mjcf_joint(formulas, notes)});

@@ -33,8 +33,8 @@ struct Export {
   std::vector<NotExpressed> not_expressed;
 };
 
-/// `path`: the file to write; LinuxCNC gets further files beside it. `record`, adapted to the model, gives the error of
-/// leaving these effects out. Throws Failure(bad_input) if the record is too short for the filter.
+/// `path`: the file to write; LinuxCNC gets further files beside it. `record`, adapted to the model, gives the error due to
+/// the omitted effects. Throws Failure(bad_input) if the record is too short for the filter.
 Export export_model(const sim::DriveDescription& model, ExportTarget target, const std::string& path,
                     const Record* record);
 

@@ -86,9 +86,8 @@ bool is_socket(const std::string& path) {
 void require_no_other_file(const std::string& path) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) return;
-  throw Failure(
-      ExitCode::usage,
-      fmt::format("{}: a file that is no socket is there, and it stays: --socket PATH chooses another", path));
+  throw Failure(ExitCode::usage,
+                fmt::format("{}: this file exists and is not a socket; choose another path with --socket", path));
 }
 
 }  // namespace
@@ -119,7 +118,7 @@ OwnedDescriptor listen_at_socket(const std::string& path) {
   const sockaddr_un address = address_of(path);
   if (connect(new_socket(), address) == 0)
     throw Failure(ExitCode::refused,
-                  fmt::format("a simulated board is running at {} already; --socket PATH chooses another", path));
+                  fmt::format("a simulated board already runs at {}; choose another path with --socket", path));
   require_no_other_file(path);
   ::unlink(path.c_str());
   OwnedDescriptor socket = new_socket();

@@ -55,7 +55,7 @@ std::string device_file(const std::string& path) {
 const UsbBoard& choose(const std::vector<UsbBoard>& boards, const std::string& serial_number) {
   if (boards.empty())
     throw Failure(ExitCode::no_such_device,
-                  "no board on USB: is it plugged in and powered? --sim uses a simulated one");
+                  "no board on USB: plug one in and power it, or start `axistool sim` and give --device sim");
   std::vector<std::string> present;
   for (const UsbBoard& board : boards) {
     if (!serial_number.empty() && board.serial_number == serial_number) return board;

@@ -227,7 +227,7 @@ class ModelReader {
            did_you_mean(entry.kind, kinds), fmt::join(kinds, ", "));
     }
     if (model_.find(entry.kind) != nullptr && !may_repeat(*info))
-      fail(line_of(table), "effect {} stands in the model twice; keep one of them", entry.kind);
+      fail(line_of(table), "effect {} is in the model twice; keep one of them", entry.kind);
     entry.from = text_at(table, "from", "[[effect]]", false);
     refuse_unknown_in_effect(table, *info);
     if (info->curve) {
@@ -338,7 +338,7 @@ class ModelReader {
       refuse_unknown(*term, known, fmt::format("in {} of effect {}", kHarmonics, info.kind));
       for (const auto& [parameter, family] : {std::pair(&cosine, "cosine"), std::pair(&sine, "sine")}) {
         const std::string id = sim::harmonic_id(family, order);
-        if (entry.has(id)) fail(line_of(element), "{}: order {} stands twice; keep one of them", kHarmonics, order);
+        if (entry.has(id)) fail(line_of(element), "{}: order {} is given twice; keep one of them", kHarmonics, order);
         read_parameter(*term, *parameter, id, entry);
         if (!entry.has(id))
           fail(line_of(element), "{}: order {} lacks {}; add it", kHarmonics, order, parameter->key(model_.data.kind));
@@ -411,8 +411,8 @@ class ModelReader {
     }
     const std::string_view single = both.key(model_.data.kind);
     if (entry.has(std::string(both.id)) && missing.size() < keys.size())
-      fail(line_of(*table.get(single)), "{} stands beside a value for one direction ({}); keep one form", single,
-           fmt::join(keys, ", "));
+      fail(line_of(*table.get(single)), "{} is given together with a value for one direction ({}); keep one form",
+           single, fmt::join(keys, ", "));
     if (!entry.has(std::string(both.id)) && !missing.empty())
       fail(line_of(table), "missing field {} in effect {}; give {}, or {} for both directions", missing.front(),
            info.kind, fmt::join(keys, " and "), single);

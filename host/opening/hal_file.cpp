@@ -107,7 +107,7 @@ void name_by_hal(Log& log, const std::string& hal_path) {
   throw Failure(
       ExitCode::bad_input,
       fmt::format(
-          "{}: no sampler whose pins stand in {} 'net' lines, as the log has columns; name the file that loads it",
+          "{}: no sampler with pins in {} 'net' lines, one for each column of the log; name the file that loads it",
           hal_path, log.columns.size()));
 }
 

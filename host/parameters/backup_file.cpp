@@ -125,9 +125,9 @@ std::vector<Assignment> parse_backup(std::string_view text, std::string_view nam
   if (seal && list.size() != seal->count)
     fail(fmt::format("the backup names {} parameters, but says {}", list.size(), seal->count));
   if (!seal && list.size() < kOldBoard)
-    fail(fmt::format("no whole backup: it has no CRC, and names {} of the {} parameters of a board with two axes",
+    fail(fmt::format("incomplete backup: it has no CRC, and only {} of the {} parameters of a board with two axes",
                      list.size(), kOldBoard));
-  if (!seal && !text.ends_with('\n')) fail("the backup was cut: its last line has no end");
+  if (!seal && !text.ends_with('\n')) fail("the backup was cut: its last line is incomplete");
   return list;
 }
 
@@ -148,7 +148,7 @@ std::optional<PitchTables> pitch_of_backup(std::string_view text, std::string_vi
     if (table == nullptr || !is_valid(one) || table->size() == firmware::kMostPitchPoints ||
         (!table->empty() && !may_follow(table->back(), one)))
       throw Failure(ExitCode::bad_input,
-                    fmt::format("{}:{}: no point of a table of pitch errors that this board takes. Nothing was "
+                    fmt::format("{}:{}: not a valid point of this board's table of pitch errors. Nothing was "
                                 "restored: use another copy, or axistool pitch",
                                 name, number + 1));
     table->push_back(one);

@@ -149,9 +149,9 @@ DriveLimits drive_limits(const sim::DriveDescription& model, const LimitWishes& 
   if (!(still.room > 0.0)) {
     const char* unit = model.data.kind == sim::DriveKind::rotary ? "Nm" : "N";
     throw Failure(ExitCode::refused,
-                  fmt::format("axis {}: friction and loads need {:.3g} {} at standstill, of the drive's {:.3g} {} a "
-                              "reserve of {:g} % leaves {:.3g} {}: nothing remains for acceleration. Check the model's "
-                              "gains and limits, or lower --reserve",
+                  fmt::format("axis {}: friction and loads need {:.3g} {} at standstill. The drive has {:.3g} {}; a "
+                              "reserve of {:g} % leaves {:.3g} {}, so nothing remains for acceleration. Check the "
+                              "model's gains and limits, or lower --reserve",
                               model.name, balance.need(still.way, still.push, 0.0), unit,
                               balance.most(still.way, still.push, 0.0), unit, 100.0 * wishes.reserve,
                               (1.0 - wishes.reserve) * balance.most(still.way, still.push, 0.0), unit));

@@ -29,8 +29,8 @@ class BuildModule(build_ext):
         tree = Path(os.environ.get("AXIS_BUILD") or PROJECT / "build")
         if not (tree / "CMakeCache.txt").exists():
             if not LISTS[0].exists():
-                sys.exit(f"axistool: {PROJECT} is not the project, whose C++ library this package is built of: install "
-                         "from its own folder host/python, or name a build tree in the variable AXIS_BUILD")
+                sys.exit(f"axistool: {PROJECT} does not contain the C++ library that this package needs: install from the "
+                         "project's own folder host/python, or set AXIS_BUILD to a build tree")
             if missing := missing_packages():
                 sys.exit("axistool: Debian packages are missing: sudo apt install " + " ".join(missing))
             subprocess.check_call(["cmake", "-S", PROJECT / "cmake", "-B", tree, "-G", "Ninja", "--log-level=WARNING",
@@ -38,8 +38,8 @@ class BuildModule(build_ext):
         subprocess.check_call(["cmake", "--build", tree, "--target", "axis_python"])
         module = tree / "python" / "axistool" / f"_host{sysconfig.get_config_var('EXT_SUFFIX')}"
         if not module.exists():
-            sys.exit(f"axistool: {tree} builds for another Python than {sys.executable}: name another build tree in the "
-                     "variable AXIS_BUILD")
+            sys.exit(f"axistool: {tree} builds for another Python than {sys.executable}: set AXIS_BUILD to another "
+                     "build tree")
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(module, target)

@@ -32,7 +32,7 @@ void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
   const std::size_t sector_size = bytes.size() <= 4 * kOldSector ? kOldSector : flash.sector_size();
   if (bytes.empty() || bytes.size() % sector_size != 0 || bytes.size() > flash.sector_count() * flash.sector_size())
     throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: {} bytes are no simulated flash (it has {}): remove the file, or name another", file,
+                  fmt::format("{}: {} bytes, but a simulated flash has {}: remove the file, or name another", file,
                               bytes.size(), flash.sector_count() * flash.sector_size()));
   auto next = bytes.begin();
   for (auto& sector : flash.contents())

@@ -130,7 +130,7 @@ struct Server::Parts {
       return Handled::Unhandled;
     }
     response.status = forbidden;
-    response.set_content("Not yours: open the address that axistool serve printed.\n", "text/plain");
+    response.set_content("Access denied: open the address that axistool serve printed.\n", "text/plain");
     return Handled::Handled;
   }
 

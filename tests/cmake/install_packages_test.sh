@@ -3,7 +3,7 @@
 # fails.
 set -eu
 folder=$(cd "$(dirname "$0")/../.." && pwd)/cmake/packages
-command -v dpkg-query >/dev/null || { echo "SKIPPED: no Debian system"; exit 77; }
+command -v dpkg-query >/dev/null || { echo "SKIPPED: not a Debian system"; exit 77; }
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cp "$folder/install.sh" "$scratch"

@@ -151,7 +151,7 @@ class Bench:
 
 
 def try_worked_page(bench: Bench) -> int:
-    """Each line of the page's blocks is a command, or stands in what the command above it says."""
+    """Each line of the page's blocks is a command, or a line of the output of the command above it."""
     bad = ran = 0
     said = ""
     for line in re.findall(r"^ {4}(.*)$", WORKED_PAGE.read_text(encoding="utf-8"), re.M):

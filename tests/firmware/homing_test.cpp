@@ -61,7 +61,7 @@ TEST(Homing, FindsTheSwitchAtCreepWhereverItBegins) {
     EXPECT_NEAR(static_cast<double>(rail.found), 500.0, 1.0) << begin;
     EXPECT_EQ(rail.velocity, 0.0);
     if (begin == 0.0) {
-      EXPECT_GT(rail.fastest, 5.0) << "searching is quicker than creeping";
+      EXPECT_GT(rail.fastest, 5.0) << "the search is faster than the creep";
     }
   }
 }

@@ -59,7 +59,7 @@ TEST(AxisInputs, SparksTripNothingAndWhatStaysDoes) {
   };
   for (const Line& line : lines) {
     auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
-    // An optional input is the only one that is wired.
+    // Of the optional inputs, only the tested one is wired.
     p.sequence.ready_input = line.fault == AxisFault::amplifier_not_ready;
     p.sequence.amplifier_wait = p.sequence.ready_input ? 10 : 0;
     p.encoder_fault_input = line.fault == AxisFault::encoder_invalid;
@@ -90,7 +90,7 @@ TEST(LostPeriods, EndInAStopAlongTheRamp) {
   EXPECT_EQ(axis.axis.state(), firmware::SupervisorState::stopping);
   for (int k = 0; k < 1000; ++k) axis.step();
   EXPECT_EQ(axis.axis.fault(), AxisFault::control_overrun);
-  EXPECT_EQ(axis.axis.latched().second(), AxisFault::none) << "the feedback is sound";
+  EXPECT_EQ(axis.axis.latched().second(), AxisFault::none) << "no fault of the feedback is reported";
   EXPECT_LT(axis.at_mm() - begin, 250.0 * (0.125 + 0.04) / 2 + 1.0) << "the ramp's own way";
   EXPECT_NEAR(static_cast<double>(axis.axis.telemetry().encoder_counts) * firmware_test::kEncoderResolution_mm,
               axis.at_mm(), 0.01)

@@ -226,7 +226,7 @@ TEST_F(BoardMonitor, SilenceIsNoFaultWhereTheHostCommandsNothingForAWhile) {
   for (int k = 0; k < 60'000; ++k) ASSERT_EQ(after(1000), AxisFault::none);
   EXPECT_FALSE(watch.was_left_alone());
   EXPECT_EQ(after(1000), AxisFault::none) << "a normal time-out is no fault";
-  EXPECT_TRUE(watch.was_left_alone()) << "enabled axes are not left alone for ever";
+  EXPECT_TRUE(watch.was_left_alone()) << "axes must not stay enabled without a program";
 }
 
 TEST_F(BoardMonitor, LinesOfTheBoard) {

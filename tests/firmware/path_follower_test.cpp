@@ -128,7 +128,7 @@ TEST_F(Followed, HoldStopsOnThePathAndGoesOn) {
   const auto stands = group_[0].at;
   for (int k = 0; k < 500; ++k) step(pieces());
   EXPECT_EQ(group_[0].at, stands);
-  EXPECT_TRUE(follower_.is_moving()) << "a hold is no end, however little is buffered";
+  EXPECT_TRUE(follower_.is_moving()) << "a hold does not end the path, even with few nodes";
   follower_.hold(false);
   run(pieces());
   EXPECT_EQ(follower_.end(), PathEnd::completed);

@@ -188,7 +188,7 @@ TEST(PitchTable, RefusesWhatNoScrewIs) {
   EXPECT_TRUE(may_follow(zero, {64, 65536, -65536}));
   EXPECT_FALSE(may_follow(zero, {64, 65537, 0})) << "steeper than a sixty-fourth";
   EXPECT_FALSE(may_follow(zero, {64, 0, -65537}));
-  EXPECT_FALSE(may_follow(zero, {0, 0, 0})) << "twice the same place";
+  EXPECT_FALSE(may_follow(zero, {0, 0, 0})) << "the same position twice";
   EXPECT_FALSE(may_follow({2147483647, 0, 0}, {-2147483647 - 1, 0, 0}));
   EXPECT_TRUE(may_follow({-2147483647 - 1, 0, 0}, {2147483647, 0, 0}));
   EXPECT_FALSE(firmware::is_valid({0, firmware::kLargestDeviation + 1, 0}));

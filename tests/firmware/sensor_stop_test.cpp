@@ -217,7 +217,7 @@ TEST_F(SensorStop, AStopWhoseEncoderFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
       before_mm = a.at_mm();
       a.io.encoder().reading.counts = at;
     });
-    EXPECT_LT(fastest_mm_s, 40.0) << silent_at << ": from 25 to 31 mm/s; 60 if nobody lets go";
+    EXPECT_LT(fastest_mm_s, 40.0) << silent_at << ": rises from 25 to 31 mm/s; to 60 if the enable does not drop";
   }
 }
 

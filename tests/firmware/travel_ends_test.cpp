@@ -58,7 +58,7 @@ TEST(EndsOfTravel, FromTheEndAJogLeadsBackOnly) {
     axis.axis.jog(50.0f);
     for (int k = 0; k < 100; ++k) axis.step();
   }
-  EXPECT_LT(axis.at_mm(), 10.0) << "creeps out, a little with each request";
+  EXPECT_LT(axis.at_mm(), 10.0) << "repeated requests move the axis out";
   EXPECT_EQ(axis.axis.fault(), AxisFault::none);
   EXPECT_TRUE(axis.axis.jog(-50.0f));
 }
@@ -104,16 +104,16 @@ TEST(EndsOfTravel, AnAxisThatIsNotHomedGoesAsFarAsItsTravelIsLongFromWhereItWasE
     EXPECT_GT(went_mm, 15.0) << "it stops far too early";
     EXPECT_EQ(axis.axis.plan_move_by(by(static_cast<double>(way) * (20.1 - went_mm))).refusal,
               firmware::Refusal::outside_travel)
-        << "several moves go no farther than one";
+        << "several moves must not go farther than one";
     ASSERT_TRUE(axis.axis.start(axis.axis.plan_move_by(by(static_cast<double>(-way) * went_mm)).plan));
     run(2000);
-    EXPECT_NEAR(axis.at_mm(), from_mm, 0.1) << "the way back is free";
+    EXPECT_NEAR(axis.at_mm(), from_mm, 0.1) << "moving back is allowed";
   }
   ASSERT_TRUE(axis.axis.jog(50.0f));
   run(3000);
   from_mm = axis.at_mm();
   enable_anew();
-  ASSERT_TRUE(axis.axis.jog(50.0f)) << "from here it counts anew";
+  ASSERT_TRUE(axis.axis.jog(50.0f)) << "the travel counts from this position";
   run(3000);
   EXPECT_NEAR(axis.at_mm() - from_mm, 20.0, 5.0);
   EXPECT_EQ(axis.axis.fault(), AxisFault::none);

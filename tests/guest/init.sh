@@ -1,6 +1,6 @@
 #!/busybox/busybox sh
-# First process of the guest, whose files are all in memory: those of the starter, and what Debian's utilities have in
-# busybox. The starter left the command; it learns the exit code from the console.
+# First process of the guest. All files are in memory: those that run.sh has packed, and busybox instead of Debian's
+# utilities. run.sh has packed the command too, and reads its exit code from the console.
 /busybox/busybox mkdir -p /dev /proc /sys /run /tmp
 /busybox/busybox --install -s /busybox
 export PATH=/busybox

@@ -1,7 +1,7 @@
 #!/bin/bash
-# kernel.sh CACHE: fetches Debian's kernel and a static busybox by their package names, only unpacked, never installed, and
-# makes of them what the guest boots. Prints the folder, CACHE/VERSION, with vmlinux and initrd; quick when it is there.
-# Exit code 77, with the reason on standard error, where the packages cannot be had.
+# kernel.sh CACHE: downloads and unpacks Debian's kernel and a static busybox, without installing them, and makes the
+# files that the guest boots: vmlinux and initrd. Prints their folder, CACHE/VERSION; does nothing if they exist.
+# Exit code 77, with the reason on standard error, if the packages are not available.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 mkdir -p "$1"
@@ -19,7 +19,7 @@ for tool in apt-get dpkg-deb cpio modinfo xz; do
   command -v $tool >/dev/null || skip "$tool is not installed"
 done
 
-# Asking apt takes longer than the rest; its answer holds until its lists change.
+# apt is the slowest part; its answer is kept until its lists change.
 scripts=$(cat "$here/init.sh" "$here/kernel.sh" | sha256sum | cut -c 1-12)
 answer=$cache/folder-$scripts
 if [ "$answer" -nt /var/lib/apt/lists ] && [ -e "$(cat "$answer")/initrd" ]; then
@@ -48,7 +48,7 @@ dpkg-deb --fsys-tarfile busybox-static_*.deb | tar x ./bin/busybox
 dpkg-deb --fsys-tarfile "$package"_*.deb | tar x --wildcards './boot/vmlinuz-*' './lib/modules/*/kernel/drivers/usb/*' \
   './lib/modules/*/kernel/drivers/hid/*' './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/char/virtio_console*'
 
-# Decompressed here it boots 3 s sooner than by its own code. xz complains of what follows the compressed kernel.
+# A kernel that is decompressed here boots 3 s faster. xz warns about the bytes after the compressed kernel.
 offset=$(LC_ALL=C grep -abo -m 1 -P '\xfd7zXZ\x00' boot/vmlinuz-* | head -n 1 | cut -d : -f 1 || true)
 if [ -n "$offset" ]; then
   tail -c +$((offset + 1)) boot/vmlinuz-* | xz -dc --single-stream >vmlinux 2>/dev/null || true
@@ -59,7 +59,7 @@ mkdir -p root/busybox root/modules
 cp bin/busybox root/busybox/
 install -m 755 "$here/init.sh" root/init
 
-# Each module after those that it needs; what is not found is built into the kernel.
+# Each module after the modules that it needs. Modules without a file are built into the kernel.
 declare -A added=()
 add_module() {
   local name=${1//-/_} file needed

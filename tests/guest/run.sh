@@ -1,8 +1,8 @@
 #!/bin/bash
 # run.sh CACHE PROGRAM [ARGUMENT...]: runs a program of this machine as root under Debian's own kernel, in an emulated PC
-# with the modules of USB/IP, HID and CP2112. The program has udev, a shell, its own file and libraries, and those named.
-# Its output and its exit code are those of this script; 77, with the reason, if the guest is not available.
-# GUEST_FILES: files and folders that the guest has too, separated by colons, programs with their libraries.
+# with the modules of USB/IP, HID and CP2112. The guest contains udev, a shell, and the program with its libraries.
+# Output and exit code are those of the program; 77, with the reason, if the guest is not available.
+# GUEST_FILES: further files and folders in the guest, separated by colons, programs with their libraries.
 # GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: FIFOs $GUEST_LINK.in and $GUEST_LINK.out, which the
 # guest sees as /dev/vport*.
 set -euo pipefail
@@ -51,9 +51,9 @@ printf 'export ASAN_OPTIONS=%q UBSAN_OPTIONS=%q; cd %q; exec %s\n' "${ASAN_OPTIO
   cd "$root" && find . | cpio -o -H newc -R 0:0 --quiet
 } >"$work/initrd"
 
-# Without /dev/kvm, which hangs if it is itself emulated. The guest's time follows its instructions, a thousand million
-# a second: on a loaded computer it is slow, but misses no event. Time in which it only waits is skipped; if it waits
-# for something outside, the clock counts. Emulation is fastest with a plain processor, with programs at the same
+# Without /dev/kvm, which hangs if it is itself emulated. The guest's clock counts its instructions, 10^9 a second, so
+# that the guest misses no event on a loaded computer. Idle time is skipped, except while it waits for something
+# outside. Emulation is fastest with a plain processor, with programs at the same
 # addresses each time (translated code is reused), and without calibration of the processor's timer.
 link=()
 waiting=off

@@ -1,9 +1,9 @@
 #!/bin/bash
 # with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: runs run.sh and, beside it, the emulated Cortex-M board, whose
 # reports the guest sees at /dev/vport*. The board's emulator is outside the guest, because an emulator inside an
-# emulator is too slow for 1 kHz. The board's time follows its instructions, 250 million a second, and the clock while
-# it is idle: on a loaded computer the board runs slowly, but misses no control period. The bridge in the guest reports
-# the guest's time to the board, whose time does not pass it, so the faster emulator waits for the slower one.
+# emulator is too slow for 1 kHz. The board's clock counts its instructions, 250 million a second, so that it misses no
+# control period on a loaded computer; while the board is idle, real time counts. The bridge in the guest reports the
+# guest's time to the board, which waits when it is ahead.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 image=$(readlink -f "$1")
@@ -15,7 +15,7 @@ if ! command -v qemu-system-arm >/dev/null || [ ! -e "$image" ]; then
 fi
 folder=$(mktemp -d)
 mkfifo "$folder/link.in" "$folder/link.out"
-exec 8<>"$folder/link.in" 9<>"$folder/link.out" # so that none waits for another to open them
+exec 8<>"$folder/link.in" 9<>"$folder/link.out" # so that no program waits until another opens them
 cat <"$folder/link.out" >"$folder/to_board" 8>&- 9>&- &
 copier=$!
 (cd "$folder" && exec qemu-system-arm -M mps2-an386 -device loader,file="$image",cpu-num=0 -display none -monitor none -serial none \

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mutants.sh ROOT LIBRARIES CXX all|few|DRIVER: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
-# unless each makes its driver's test fail. A mistake whose text is not found exactly once, or that does not compile, is
-# an error in the list. `few` tries the first mistake of each driver, DRIVER all mistakes of one driver.
+# unless the driver's test fails with each. The list has an error if a mistake does not compile, or if its text does not
+# occur exactly once. `few` tries the first mistake of each driver, DRIVER all mistakes of one driver.
 set -eu
 root=$1 libraries=$2 cxx=$3 which=$4
 jobs=$(nproc)
@@ -14,7 +14,7 @@ printf '#include <gtest/gtest.h>\n' >"$work/common.hpp"
 # shellcheck disable=SC2086
 "$cxx" $flags -x c++-header "$work/common.hpp" -o "$work/common.hpp.gch"
 
-# One numbered folder a mistake: the changed source, at its path, the test's name, and what is compiled with it.
+# One numbered folder for each mistake: the changed source, the name of the test, and the sources compiled with both.
 awk -v root="$root" -v work="$work" -v which="$which" '
   function trimmed(text) { gsub(/^ +| +$/, "", text); return text }
   function meant(text) { text = trimmed(text); gsub(/`pipe`/, "|", text); gsub(/`or`/, "||", text); gsub(/\\n/, "\n", text); return text }

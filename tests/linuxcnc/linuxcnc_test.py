@@ -30,7 +30,7 @@ MODULES = Path("/usr/lib/linuxcnc/modules")
 NAMESPACES = ["unshare", "--user", "--map-user=1000", "--map-group=1000", "--keep-caps", "--mount", "--ipc", "--net",
               "--pid", "--fork", "--kill-child", "--mount-proc"]
 LIMIT_S = 600  # for a busy computer; an idle one takes a tenth
-PARTS = ["star", "spiral"]  # of the G-code corpus, one behind the other
+PARTS = ["star", "spiral"]  # of the G-code corpus, one after the other
 MOST_RATIO = 0.6
 
 SHEET = """format = "axis-model/1"
@@ -46,7 +46,7 @@ limit_V = 10.0
 [drive.encoder]
 resolution_mm = 0.001
 """
-# What the data sheets say, and what axistool must find: own_plant.py has 3 Nm/V, and cogs with 0.45 Nm every 4 mm.
+# Data sheets, and the effects that axistool must find: own_plant.py has 3 Nm/V, and cogs with 0.45 Nm every 4 mm.
 X_SHEET = SHEET.format(name="x", gain=6.2, lead=1.5915494309189535)
 Y_SHEET = SHEET.format(name="y", gain=6.0, lead=1.6)
 X_EFFECTS = """[[effect]]

@@ -308,7 +308,7 @@ bool excludes(const string& a, const string& b) {
   const auto pair = [&](const char* one, const char* other) {
     return (a == one && b == other) || (a == other && b == one);
   };
-  // The centre of a spring takes a constant force over.
+  // A constant force only shifts the centre of a spring.
   if (pair("spring_torque", "constant_torque") || pair("spring_torque", "dac_offset")) return true;
   return pair("presliding", "friction_lag") || pair("presliding", "dwell_stiction") || pair("presliding", "stribeck") ||
          pair("stribeck", "friction_lag") || pair("stribeck", "dwell_stiction") ||
@@ -340,7 +340,7 @@ int main(int argc, char** argv) {
     const auto hides = [&](const char* kind) { return std::count(kinds.begin(), kinds.end(), kind) > 0; };
     if ((curved || hides("friction_lag") || hides("dwell_stiction")) && !hides("stribeck"))
       d.extra = r.between(0.25, 0.5), d.fade = r.between(2, 5);
-    // A given model with a level for each direction explains a force of one sign by them, so there it has one.
+    // Two levels in the given model would absorb a force of constant sign, so then it has a single level.
     const bool one_level = hides("coulomb_asymmetry") || hides("constant_torque") || hides("dac_offset");
     if (one_level) d.backward = d.forward;
     for (const string& kind : kinds) d.hidden[kind] = sizes(kind, r);

@@ -109,7 +109,7 @@ TEST_P(EveryEffect, IsConfusedWithOthersThatExist) {
   for (const std::string_view other : info.confused_with) {
     EXPECT_NE(sim::find_effect(other), nullptr) << other;
     EXPECT_NE(other, info.kind);
-    EXPECT_TRUE(seen.insert(other).second) << other << " stands twice";
+    EXPECT_TRUE(seen.insert(other).second) << other << " is listed twice";
   }
 }
 
@@ -229,7 +229,7 @@ TEST_P(EveryEffect, WithoutStrengthLeavesTheDriveAsItWas) {
     return;
   }
   const auto powerless = kPowerless.find(info.kind);
-  ASSERT_NE(powerless, kPowerless.end()) << "say above how the new effect loses its strength";
+  ASSERT_NE(powerless, kPowerless.end()) << "add to kPowerless the parameters at which the new effect vanishes";
   const Drive plain(coulomb_drive());
   const Drive same(with(coulomb_drive(), std::string(info.kind), powerless->second.parameters));
   DriveState expected = plain.at(1.0, 0.0), state = same.at(1.0, 0.0);

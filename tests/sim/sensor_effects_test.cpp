@@ -20,7 +20,7 @@ TEST(TachGain, MultipliesTheReading) {
   const Drive drive(with(free_mass(), "tach_gain", {{"gain", 0.98}}));
   const DriveState state = run(drive, drive.at(0.0, 25.0), 0.0, 10, 0.001);
   EXPECT_DOUBLE_EQ(drive.tachometer(state), 0.98 * 25.0);
-  EXPECT_NEAR(state.x, kLead * 25.0 * 0.01, 1e-12) << "the motion is another matter";
+  EXPECT_NEAR(state.x, kLead * 25.0 * 0.01, 1e-12) << "the effect does not change the motion";
 }
 
 TEST(TachOffset, IsReadAtStandstill) {

@@ -241,7 +241,7 @@ def design(
 def require_output(output: PathLike | None, report: PathLike | None) -> None:
     """Raises UsageError for a report without an output file of the result."""
     if report is not None and output is None:
-        raise UsageError("the report names the file of the result: give output=, too")
+        raise UsageError("a report needs output=, because it states the name of the result's file")
 
 
 def _numbers(given: float | Sequence[float]) -> list[float]:

@@ -12,11 +12,11 @@ from typing import Any
 from . import _host
 from .record import Record
 from .sources import ModelLike, PathLike, RecordLike, as_record, model_source, path_text, record_source
-from .tables import html_table
+from .tables import Shown, Table
 
 
-@dataclass(frozen=True)
-class Opening:
+@dataclass(frozen=True, repr=False)
+class Opening(Shown):
     """Records made from logs. records: by file name; axes: axis of each record, by file name, empty if the log has only
     one axis; asks: uncertain channels (correct them with `map`); missing: missing information; mapping: text of a
     mapping file, for `map` with the next log of that machine.
@@ -33,10 +33,10 @@ class Opening:
     mapping: str
     json: Mapping[str, Any]
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(file["file"], one["name"], one["taken_as"] or "-", one["factor"], one["sure"], one["why"])
                 for file in self.json["files"] for one in file["channels"]]
-        return html_table(["log", "channel", "taken as", "factor", "sure", "why"], rows, "; ".join(self.asks))
+        return Table(["log", "channel", "taken as", "factor", "sure", "why"], rows, "; ".join(self.asks))
 
 
 def open_logs(

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from .errors import BadInput
-from .tables import html_table
+from .tables import Shown, Table
 
 
-@dataclass
-class Model:
+@dataclass(repr=False)
+class Model(Shown):
     """A drive's data sheet and effects. document: the file's content, which may be changed in place.
 
     >>> model = Model.read("x.toml")
@@ -62,13 +62,13 @@ class Model:
                 return dict(effect)
         raise KeyError(kind)
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = []
         for effect in self.document.get("effect", []):
             rows += [(effect["kind"], key, value) for key, value in effect.items() if isinstance(value, float)]
             rows += [(effect["kind"], f"{key}, order {one['order']}", value) for one in effect.get("harmonics", [])
                      for key, value in one.items() if isinstance(value, float)]
-        return html_table(["effect", "parameter", "value"], rows, self.name)
+        return Table(["effect", "parameter", "value"], rows, self.name)
 
 
 def _value(value: Any) -> str:

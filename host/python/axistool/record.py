@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import _host
 from .errors import BadInput
 from .plots import stacked_axes
-from .tables import html_table
+from .tables import Shown, Table
 
 
-@dataclass
-class Record:
+@dataclass(repr=False)
+class Record(Shown):
     """A record of n rows. columns: arrays of shape (n,) by names with units (`t_s`, `u_V`, `x_mm`, `w_rad_s`, …);
     header: the entries of the file's header.
 
@@ -108,10 +108,10 @@ class Record:
         axes[-1].set_xlabel("t_s")
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, len(values), float(np.min(values)), float(np.max(values)))
                 for name, values in self.to_dict().items() if len(values)]
-        return html_table(["column", "rows", "least", "most"], rows, self.header.get("drive", ""))
+        return Table(["column", "rows", "least", "most"], rows, self.header.get("drive", ""))
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Record:

@@ -12,11 +12,11 @@ from .analysis import predict
 from .plots import axes_of
 from .record import Record
 from .sources import ModelLike, RecordLike, as_record
-from .tables import html_table
+from .tables import Shown, Table
 
 
-@dataclass(frozen=True)
-class Residuals:
+@dataclass(frozen=True, repr=False)
+class Residuals(Shown):
     """Measured minus predicted, one value for each of the record's n rows.
 
     coordinate (n,): in the unit of its name; values (n,): in the unit of `channel`; forward (n,): whether the axis
@@ -43,10 +43,10 @@ class Residuals:
         axes.legend()
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(words, int(np.count_nonzero(which)), float(np.sqrt(np.mean(self.values[which] ** 2))))
                 for which, words in ((self.forward, "forward"), (~self.forward, "not forward")) if np.any(which)]
-        return html_table(["direction", "rows", "rms"], rows, f"{self.channel}: measured - predicted")
+        return Table(["direction", "rows", "rms"], rows, f"{self.channel}: measured - predicted")
 
 
 def residuals(

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .model import Model
 from .plots import axes_of, bars
-from .tables import html_table
+from .tables import Shown, Table
 
 _TIMES = "error / noise floor"
 
@@ -33,8 +33,8 @@ class Estimate:
     ci95: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Shown):
     """Result of identify: the model, and its parameters by name (J_kg_m2, B_Nm_s_per_rad, positive_Nm, …).
 
     relative_error: norm of the residual over norm of the torque or force, 0 to 1.
@@ -62,10 +62,10 @@ class Identification:
         axes.set_xlabel("95 % interval, % of the value")
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, one.value, *one.ci95) for name, one in self.parameters.items()]
-        return html_table(["parameter", "value", "95 % from", "to"], rows,
-                          f"{self.model.name}: {100.0 * self.relative_error:.2g} % of the torque or force unexplained")
+        return Table(["parameter", "value", "95 % from", "to"], rows,
+                     f"{self.model.name}: {100.0 * self.relative_error:.2g} % of the torque or force unexplained")
 
 
 @dataclass(frozen=True)
@@ -82,8 +82,8 @@ class ChannelError:
     fit: float
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Shown):
     """How well a model predicts records. combined: error over noise floor, about 1 for a perfect model.
 
     relative_error: error of the inverse model, 0 to 1; None if the axis does not move.
@@ -106,11 +106,11 @@ class Comparison:
         axes.axvline(1.0, color="black", linewidth=0.8)
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, one.rms, one.floor, one.rms / one.floor if one.floor > 0.0 else "", one.fit)
                 for name, one in self.channels.items()]
-        return html_table(["channel", "rms", "noise floor", "times", "fit, %"], rows,
-                          f"{self.combined:.3g} times the noise floor")
+        return Table(["channel", "rms", "noise floor", "times", "fit, %"], rows,
+                     f"{self.combined:.3g} times the noise floor")
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,8 @@ class Candidate:
     parameters: Mapping[str, Any]
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Shown):
     """Which physical effect a model lacks. status: adequate, parameters, missing, ambiguous, unexplained or
     insufficient_data; effects: effects to add, best first.
 
@@ -154,9 +154,9 @@ class Diagnosis:
         before, after = ([getattr(one, name) for one in self.candidates] for name in ("before", "after"))
         return bars(axes, labels, {"before": before, "after": after}, _TIMES)
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(" and ".join(one.kinds), one.before, one.after, one.confidence) for one in self.candidates]
-        return html_table(["effect", "before", "after", "confidence"], rows, f"{self.status}: {self.explanation}")
+        return Table(["effect", "before", "after", "confidence"], rows, f"{self.status}: {self.explanation}")
 
 
 @dataclass(frozen=True)
@@ -174,8 +174,8 @@ class Fitted:
     determined: bool
 
 
-@dataclass(frozen=True)
-class Addition:
+@dataclass(frozen=True, repr=False)
+class Addition(Shown):
     """A model with one more effect. before, after: combined error on validation data; confidence: 0 to 1.
 
     >>> from axistool import add
@@ -191,12 +191,12 @@ class Addition:
     parameters: Mapping[str, Fitted]
     json: Mapping[str, Any]
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, one.value, one.deviation, "" if one.determined else "not determined by these data")
                 for name, one in self.parameters.items()]
-        return html_table(["parameter", "value", "standard deviation", ""], rows,
-                          f"error {self.before:.3g} -> {self.after:.3g} times the noise floor, "
-                          f"{100.0 * self.confidence:.3g} % confidence")
+        return Table(["parameter", "value", "standard deviation", ""], rows,
+                     f"error {self.before:.3g} -> {self.after:.3g} times the noise floor, "
+                     f"{100.0 * self.confidence:.3g} % confidence")
 
 
 @dataclass(frozen=True)
@@ -212,8 +212,8 @@ class ImprovementStep:
     validate: float
 
 
-@dataclass(frozen=True)
-class Improvement:
+@dataclass(frozen=True, repr=False)
+class Improvement(Shown):
     """The model with all significant effects, and the errors of each step.
 
     >>> from axistool import improve
@@ -233,13 +233,13 @@ class Improvement:
         train, validate = ([getattr(one, name) for one in self.ladder] for name in ("train", "validate"))
         return bars(axes, labels, {"training": train, "validation": validate}, _TIMES)
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(", ".join(one.added) or "base re-fitted", one.train, one.validate) for one in self.ladder]
-        return html_table(["with", "training", "validation"], rows, self.stopped_because)
+        return Table(["with", "training", "validation"], rows, self.stopped_because)
 
 
-@dataclass(frozen=True)
-class Design:
+@dataclass(frozen=True, repr=False)
+class Design(Shown):
     """A controller. Plant A (2, 2), B (2,); Kalman gain Kobs (3, sensors); state feedback Kc (2,): V/mm, V/(rad/s)
     (linear: V/m, V/(m/s)); observer_poles (3,): discrete; parameters: text of the board's parameter file.
 
@@ -268,7 +268,7 @@ class Design:
         axes.set_ylabel("imaginary part")
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, np.array2string(getattr(self, name), precision=5))
                 for name in ("Kobs", "Kc", "observer_poles")]
-        return html_table(["", "value"], rows, "Kalman gain, state feedback, observer poles")
+        return Table(["", "value"], rows, "Kalman gain, state feedback, observer poles")

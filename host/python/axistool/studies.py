@@ -17,11 +17,11 @@ from .model import Model
 from .plots import axes_of, bars, stacked_axes
 from .results import Estimate
 from .sources import ModelLike, PathLike, Progress, RecordLike, Records, model_source, path_text, record_source, record_sources
-from .tables import html_table
+from .tables import Shown, Table
 
 
-@dataclass(frozen=True)
-class Friction:
+@dataclass(frozen=True, repr=False)
+class Friction(Shown):
     """A friction curve through n constant speeds. speed (n,): rad/s or m/s; effort, half_width (n,): mean friction and
     half width of its 95 % interval, Nm or N; curve (2, 122): speed and friction of the fit.
 
@@ -49,13 +49,13 @@ class Friction:
         axes.legend()
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(name, one.value, *one.ci95) for name, one in self.parameters.items()]
-        return html_table(["parameter", "value", "95 % from", "to"], rows, f"{len(self.speed)} constant speeds")
+        return Table(["parameter", "value", "95 % from", "to"], rows, f"{len(self.speed)} constant speeds")
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, repr=False)
+class Plan(Shown):
     """A run that separates rival explanations. rivals: effects of each explanation; probabilities: before the run, 0 to
     1, with sum 1; expected_odds: odds of the true explanation to the next one; run: text of the run's file, empty if no
     motion separates them.
@@ -76,13 +76,13 @@ class Plan:
         """By matplotlib: the probability of each rival before the run. Returns the axes."""
         return bars(axes, [" + ".join(one) for one in self.rivals], {"before the run": self.probabilities}, "probability")
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(" + ".join(kinds), probability) for kinds, probability in zip(self.rivals, self.probabilities)]
-        return html_table(["rival", "probability before the run"], rows, f"expected odds {self.expected_odds:.3g}")
+        return Table(["rival", "probability before the run"], rows, f"expected odds {self.expected_odds:.3g}")
 
 
-@dataclass(frozen=True)
-class Response:
+@dataclass(frozen=True, repr=False)
+class Response(Shown):
     """A frequency response at n lines. f_Hz (n,); plant (n,): complex, position (without one, speed) over command, in
     the units of json; margins: margins of the loop, None without a controller; model: the model with the measured
     compliance or delay, None without a model.
@@ -108,9 +108,9 @@ class Response:
         axes[1].set_xlabel("Hz")
         return axes
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(float(f), float(abs(one)), float(np.degrees(np.angle(one)))) for f, one in zip(self.f_Hz, self.plant)]
-        return html_table(["Hz", "magnitude", "phase, deg"], rows, f"{len(rows)} lines")
+        return Table(["Hz", "magnitude", "phase, deg"], rows, f"{len(rows)} lines")
 
 
 @dataclass(frozen=True)
@@ -127,8 +127,8 @@ class CircleCause:
     um: float
 
 
-@dataclass(frozen=True)
-class Circle:
+@dataclass(frozen=True, repr=False)
+class Circle(Shown):
     """Causes of circle errors. causes: the most probable first; cannot_see: causes that these sensors cannot show.
 
     >>> import numpy as np
@@ -148,9 +148,9 @@ class Circle:
         """By matplotlib: the share of each cause in micrometres. Returns the axes."""
         return bars(axes, [f"{one.kind} {one.axis}" for one in self.causes], {"share": [one.um for one in self.causes]}, "um")
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Table:
         rows = [(one.kind, one.axis, one.um, one.probability) for one in self.causes]
-        return html_table(["cause", "axis", "um", "probability"], rows, "cannot see: " + ", ".join(self.cannot_see))
+        return Table(["cause", "axis", "um", "probability"], rows, "cannot see: " + ", ".join(self.cannot_see))
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,39 @@
-"""Results as HTML tables, for notebooks."""
+"""Results as tables: HTML in notebooks, text elsewhere."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
+from typing import NamedTuple
 
 
-def html_table(heads: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
-    """Numbers with five digits; everything else as text."""
+class Table(NamedTuple):
+    """Numbers are shown with five digits; everything else as text."""
 
-    def cell(value: object) -> str:
-        return f"{value:.5g}" if isinstance(value, float) else escape(str(value))
+    heads: Sequence[str]
+    rows: Sequence[Sequence[object]]
+    caption: str = ""
 
-    head = "".join(f"<th>{escape(one)}</th>" for one in heads)
-    body = "".join("<tr>" + "".join(f"<td>{cell(one)}</td>" for one in row) + "</tr>" for row in rows)
-    title = f"<caption>{escape(caption)}</caption>" if caption else ""
-    return f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    def cells(self) -> list[list[str]]:
+        return [[f"{one:.5g}" if isinstance(one, float) else str(one) for one in row] for row in self.rows]
+
+
+class Shown:
+    """Shows its table, in a notebook as HTML."""
+
+    def _table(self) -> Table:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        table = self._table()
+        lines = [list(table.heads), *table.cells()]
+        widths = [max(len(line[k]) for line in lines) for k in range(len(table.heads))]
+        text = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines]
+        return "\n".join(([table.caption] if table.caption else []) + text)
+
+    def _repr_html_(self) -> str:
+        table = self._table()
+        title = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+        head = "".join(f"<th>{escape(one)}</th>" for one in table.heads)
+        body = "".join("<tr>" + "".join(f"<td>{escape(one)}</td>" for one in row) + "</tr>" for row in table.cells())
+        return f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

@@ -169,7 +169,7 @@ TYPED_TEST(FaultLogOnBoard, CountsTheTimeThatTheBoardRuns) {
   bench.run(725'000);
   typename TestFixture::Bench again(&bench.board.parameter_flash());
   again.run(10'000);
-  EXPECT_EQ(this->read(again, 0, Status::no_such_row).run_s, 730u) << "written each 360 s, then 10 s more";
+  EXPECT_EQ(this->read(again, 0, Status::no_such_row).run_s, 730u) << "720 s were written, 10 s followed";
 }
 
 }  // namespace

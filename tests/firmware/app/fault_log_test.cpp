@@ -144,7 +144,7 @@ TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
       }
       flash.restore_power();
       Log log = log_at_start(flash);
-      if (log.entry(0) == fault_number(done + 1)) ++done;  // the entry that was being written
+      if (log.entry(0) == fault_number(done + 1)) ++done;  // the interrupted entry was complete
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(log, done, where));
       Log again = log_at_start(flash);
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(again, done, where + ", second start-up"));
@@ -161,7 +161,7 @@ TEST(FaultLog, ADamagedEntryIsLeftOutAndNoOther) {
   Log log = log_at_start(flash);
   for (std::uint32_t n = 1; n <= 5; ++n) ASSERT_TRUE(log.add(fault_number(n)));
   const std::size_t sector = flash.contents()[2][0] != std::byte{0xFF} ? 2 : 3;
-  flash.contents()[sector][32 * 4 + 9] ^= std::byte{2};  // behind the head and the time: the third
+  flash.contents()[sector][32 * 4 + 9] ^= std::byte{2};  // third entry, after its header and time
   EXPECT_EQ(log.entry(2), std::nullopt) << "it reads back differently";
   Log again = log_at_start(flash);
   ASSERT_EQ(again.size(), 4u);

@@ -71,13 +71,14 @@ class FrictionWatch : public testing::Test {
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(FrictionWatch, Scalars);
 
-/// Catches a watch that never acts, acts without its switch, or makes following worse; a board that tells nothing.
+/// Catches a watch that never acts, acts without its switch, or makes following worse, and a board that does not report
+/// it.
 TYPED_TEST(FrictionWatch, TakesBackACurveOfThreeTimesTheFriction) {
   for (const bool cancels : {true, false}) {
     this->cancels = cancels;
     this->begin(3.0);
     const double before_um = this->strokes(4);
-    EXPECT_FALSE(this->is_taken_back()) << "after four strokes of which three have ended";
+    EXPECT_FALSE(this->is_taken_back()) << "three of four strokes are complete, too few to decide";
     this->strokes(2);
     EXPECT_TRUE(this->is_taken_back());
     const double after_um = this->strokes(4);
@@ -90,7 +91,7 @@ TYPED_TEST(FrictionWatch, TakesBackACurveOfThreeTimesTheFriction) {
   EXPECT_FALSE(this->is_taken_back());
 }
 
-/// Catches a watch that takes a useful curve back: in an uncertainty of 30 %, and with a weight that helps one way.
+/// Catches a watch that takes back a useful curve: one that is wrong by 30 %, and one on an axis with a weight.
 TYPED_TEST(FrictionWatch, KeepsACurveThatHelps) {
   for (const double share : {0.7, 1.0, 1.3}) {
     this->begin(share);

@@ -96,7 +96,7 @@ TYPED_TEST(HomingOfABoard, UnhomedAxesMoveByAWayButNotToAPlace) {
   EXPECT_TRUE(this->is_homed());
   EXPECT_NEAR(static_cast<double>(this->axis().counts()) * firmware_test::kEncoderResolution_mm, 100.0, 0.01);
   this->run(200);
-  EXPECT_EQ(this->fault(), AxisFault::none) << "the axis does not notice from where it is counted";
+  EXPECT_EQ(this->fault(), AxisFault::none) << "a new origin of the counts causes no fault";
   const auto here = this->axis().counts();
   ASSERT_EQ(this->bench.ask(MessageType::move, firmware::MoveRequest::to(0, here - 500)).status, Status::ok);
   this->run(1000);

@@ -150,7 +150,7 @@ TEST_F(TwoClients, ACaptureIsItsClientsWhileThatOneIsHeard) {
   look(kFirst, 3000);
   EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::others_capture);
   EXPECT_TRUE(bench.application.capture().is_running());
-  EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "it may begin anew itself";
+  EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "the owner may restart its capture";
   EXPECT_EQ(ask(kSecond, MessageType::stop_capture).status, Status::others_capture);
   EXPECT_TRUE(bench.application.capture().is_running());
   look(kSecond, 2100);

@@ -77,7 +77,7 @@ TEST(ParameterStore, ReturnsTheLastOfManySaves) {
     EXPECT_EQ(found.report.state, StoreState::loaded);
     EXPECT_EQ(found.values, generation(i));
     EXPECT_EQ(found.report.sequence, static_cast<std::uint32_t>(i));
-    EXPECT_EQ(found.report.erases, static_cast<std::uint32_t>(i)) << "each save wears one sector once";
+    EXPECT_EQ(found.report.erases, static_cast<std::uint32_t>(i)) << "each save erases one sector once";
   }
 }
 
@@ -142,7 +142,7 @@ std::size_t cut_everywhere(const SimulatedFlash& before, const ParameterValues& 
 TEST(PowerCut, AtEveryOperationOfTwoSavesLeavesTheOldSetOrTheNew) {
   SimulatedFlash flash = blank_flash();
   save(flash, generation(1));
-  // An erase, two words an entry, six of the header, two marks: in each save.
+  // Each save: one erase, two words for each entry, six words of header, two marks.
   EXPECT_EQ(cut_everywhere(flash, generation(1), StoreState::loaded),
             4 * 2 * (1 + 2 * firmware::parameter_count(hal::kAxisCount) + 6 + 2));
 }
@@ -151,7 +151,7 @@ TEST(PowerCut, AtEveryOperationOfTheFirstSaveEverLeavesNothingOrTheNewSet) {
   cut_everywhere(blank_flash(), ParameterValues{}, StoreState::empty);
 }
 
-/// A power cut during a save, and another during the user's next attempt.
+/// A power cut during a save, and another during the next save.
 TEST(PowerCut, TwiceInARowLeavesOneOfTheSetsThatWereSaved) {
   SimulatedFlash before = blank_flash();
   save(before, generation(1));

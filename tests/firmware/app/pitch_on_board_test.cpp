@@ -306,7 +306,7 @@ TYPED_TEST(PitchOnBoard, RefusesWhileADriveIsEnabled) {
   machine.enable();
   EXPECT_EQ(machine.finish(points, true), Status::drive_enabled);
   machine.disable();
-  EXPECT_TRUE(machine.read().empty()) << "nothing is taken in part";
+  EXPECT_TRUE(machine.read().empty()) << "an incomplete table is discarded";
   EXPECT_EQ(machine.finish(points, true), Status::ok);
 }
 
@@ -325,7 +325,7 @@ TYPED_TEST(PitchOnBoard, RefusesWhatDoesNotGoTogether) {
   EXPECT_EQ(machine.finish(points, true), Status::not_verified) << "no point has come";
   ASSERT_EQ(machine.begin(8), Status::ok);
   ASSERT_EQ(machine.send(points), Status::ok);
-  EXPECT_EQ(machine.send(points), Status::set_differs) << "again from the first";
+  EXPECT_EQ(machine.send(points), Status::set_differs) << "the table must be sent again from its first point";
   auto others = points;
   others[3].forward += 1;
   EXPECT_EQ(machine.finish(others, true), Status::not_verified);

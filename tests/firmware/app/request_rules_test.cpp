@@ -274,7 +274,8 @@ TEST_F(Requests, AnExperimentNeedsAllItsEntriesForItsAxisAndInput) {
   firmware::ExcitationEntriesRequest counts_of_reference = levels(500.0F);
   counts_of_reference.input = static_cast<std::uint8_t>(firmware::ExcitationInput::reference);
   ASSERT_EQ(ask(kOwner, MessageType::load_excitation, counts_of_reference), Status::ok);
-  EXPECT_EQ(ask(kOwner, MessageType::start_excitation, train()), Status::malformed) << "counts are no volts";
+  EXPECT_EQ(ask(kOwner, MessageType::start_excitation, train()), Status::malformed)
+      << "levels in counts must not act as volts";
   ASSERT_EQ(ask(kOwner, MessageType::load_excitation, levels(500.0F)), Status::ok);
   firmware::ExcitationRequest longer = train();
   longer.count = 2;

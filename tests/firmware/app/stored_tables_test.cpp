@@ -170,7 +170,7 @@ TEST(StoredTables, HoldAsManyPointsAsAReaderTakes) {
   constexpr int kMost = firmware::kMostPitchPoints;
   ASSERT_EQ(load(store, values, 0, points(kMost, 0)), SaveResult::saved);
   EXPECT_EQ(load(store, values, 0, points(kMost + 1, 0)), SaveResult::not_verified);
-  EXPECT_EQ(tables_at_start(flash).x, points(kMost, 0)) << "the one before stays";
+  EXPECT_EQ(tables_at_start(flash).x, points(kMost, 0)) << "the previous table stays";
 }
 
 TEST(StoredTables, NeedRoomAndTheRightPoints) {

@@ -13,7 +13,7 @@
 
 namespace firmware::boards {
 
-/// The image's; a board under test cannot be reset by software.
+/// Instead of the image's, which is specific to the processor.
 void reset_processor() { throw parts::ChipReset("software"); }
 
 }  // namespace firmware::boards

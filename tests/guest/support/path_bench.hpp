@@ -48,7 +48,7 @@ class PathBench {
     std::cout << "contour error by USB " << rms_um << " um rms, " << by_usb["contour_um"] << " at most; in one process "
               << alone_um << " rms\n";
     EXPECT_NEAR(rms_um, alone_um, 0.05 * alone_um);
-    EXPECT_GT(rms_um, 0.3) << "an encoder of 2.4 um sees no less";
+    EXPECT_GT(rms_um, 0.3) << "an encoder of 2.4 um cannot show a smaller error";
   }
 
   /// After 2 s without heartbeat the host counts as lost; the ramp from 20 mm/s takes less than 0.5 s.
@@ -58,7 +58,7 @@ class PathBench {
     await_motion();
     ASSERT_FALSE(place().stands);
     const Place before = place();
-    ASSERT_GT(before.ahead_s, 3.0) << "else it starves before it misses its host";
+    ASSERT_GT(before.ahead_s, 3.0) << "otherwise the nodes end before the heartbeat times out";
     host->kill();
     const auto killed = Clock::now();
     Place last = place();
@@ -69,7 +69,7 @@ class PathBench {
     std::cout << "stands " << waited_s << " s and " << passed_mm << " mm after the host's end, " << last.off_um()
               << " um off the circle\n";
     EXPECT_TRUE(last.stands);
-    EXPECT_EQ(last.end, firmware::PathEnd::host_lost) << "1: completed, 2: asked, 3: starved";
+    EXPECT_EQ(last.end, firmware::PathEnd::host_lost) << "1: completed, 2: requested, 3: starved";
     EXPECT_LT(passed_mm, 20.0 * 3.0) << "at 20 mm/s, by the board's own time";
     EXPECT_LT(last.off_um(), 10.0);
     EXPECT_THAT(run("faults").output, testing::HasSubstr("host_heartbeat_lost"));
@@ -90,17 +90,18 @@ class PathBench {
     const auto told = nlohmann::json::parse(in, nullptr, false);
     std::cout << "starved: " << last.off_um() << " um off the circle, contour error until then " << told["contour_um"]
               << " um at most\n";
-    EXPECT_LT(told["contour_um"], 12.0) << "rows that are lost are no error";
+    EXPECT_LT(told["contour_um"], 12.0) << "lost rows must not count as contour error";
     EXPECT_EQ(told["stopped_because"], "starved");
     EXPECT_TRUE(last.stands);
-    EXPECT_TRUE(last.is_on) << "a path that starves is no fault";
+    EXPECT_TRUE(last.is_on) << "a path without nodes stops without a fault";
     EXPECT_LT(last.off_um(), 10.0);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr double kCount_mm = 0.00244140625, kRadius_mm = 35.0;
-  static constexpr const char* kPatient = "host.timeout=10";  // beyond the eight seconds of nodes that a board holds
+  static constexpr const char* kPatient =
+      "host.timeout=10";  // longer than the eight seconds of nodes that a board stores
 
   std::string file(const char* name) const { return folder_.path(name); }
   std::string program(const char* name, const std::string& text) const {

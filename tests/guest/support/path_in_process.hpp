@@ -1,4 +1,4 @@
-// A G-code program on a board; on a simulated one within the test it is the same loop without a bus.
+// A G-code program on a board. On a simulated board within the test, it is the same loop without a bus.
 #pragma once
 
 #include <cmath>

@@ -58,7 +58,7 @@ TEST_P(Usb, FindsTheBoardByItsNamesAndExchangesReports) {
     ASSERT_TRUE(answer) << i;
     ASSERT_EQ(*answer, echo_board::inverted(report_of(i)));
   }
-  EXPECT_FALSE(link->receive(20ms)) << "the board says nothing unasked";
+  EXPECT_FALSE(link->receive(20ms)) << "the board sends nothing without a request";
 }
 
 TEST_P(Usb, CarriesAThousandReportsASecondWithoutLoss) {
@@ -185,7 +185,7 @@ TEST_P(Usb, OpensForAUserOnceTheRuleIsInstalled) {
   wait_for_boards(1);
   ASSERT_EQ(run_program("udevadm settle --timeout=20").exit_code, 0);
   EXPECT_EQ(open_as_user(library(), "plugdev", message), 0) << message;
-  EXPECT_EQ(open_as_user(library(), "nogroup", message), 4) << "the rule is for a group: " << message;
+  EXPECT_EQ(open_as_user(library(), "nogroup", message), 4) << "only the group of the rule has access: " << message;
 }
 
 INSTANTIATE_TEST_SUITE_P(Hidapi, Usb, testing::Values(HidBackend::hidraw, HidBackend::libusb),

@@ -23,7 +23,7 @@ class Part {
   Part& operator=(const Part&) = delete;
   virtual ~Part() = default;
 
-  /// `offset` in bytes from the part's base. All that happens before this instant has happened: run() was called.
+  /// `offset` in bytes from the part's base. run() has been called up to this time.
   virtual std::uint32_t read(std::uint32_t offset) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
   /// Advances the part's own time until now.
@@ -41,8 +41,8 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   static Bus& current();
 
-  /// While `is_clocked` returns false, reads give 0 and writes are lost (RM0090, 7.3.10), and the part's time stands
-  /// still.
+  /// While `is_clocked` returns false, reads give 0 and writes are lost (RM0090, 7.3.10), and the part's time
+  /// does not advance.
   void attach(std::uintptr_t base, std::uint32_t size, Part& part, std::function<bool()> is_clocked = {});
 
   std::uint32_t read(std::uintptr_t address, std::size_t size);

@@ -55,7 +55,7 @@ class Chip {
   PlainRegisters usb{0x1000}, interrupts{0x1000}, system{0x100};
   CyclePart cycles{[this] { return clock.ahb_Hz(); }, [this] { return bits(system.read(0xFC), 24) != 0; }};
 
-  /// What the processor does on an enabled interrupt, by its number (table 62).
+  /// Handlers of the enabled interrupts, by their numbers (table 62).
   std::map<unsigned, std::function<void()>> handlers;
 
  private:

@@ -75,7 +75,7 @@ void ConverterPart::select_line(bool level) {
   if (falls_ >= 24)
     take(shift_ & 0xFFFFFF);  // daisy chain: the last 24 bits count
   else if (falls_ > 0)
-    bus_.complain("converter: fewer than 24 clocks in a frame: void");
+    bus_.complain("converter: a frame of fewer than 24 clocks is ignored");
 }
 
 void ConverterPart::data_line(bool level, double at_ns) {

@@ -19,7 +19,7 @@ class SerialPart : public Part {
   void run(double now_ns) override;
   void reset() override;
 
-  /// The other end sends a character, which has just arrived whole.
+  /// A character of the other end has just arrived completely.
   void type(char character);
   /// Characters that the other end has received; '?' if the rates differ by more than 2 %.
   const std::string& sent() const { return sent_; }

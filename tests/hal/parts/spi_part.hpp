@@ -7,13 +7,13 @@
 
 namespace parts {
 
-/// The part on the three lines. Times are those of the edges.
+/// A part at the other end of the serial lines. `at_ns`: time of an edge.
 class SerialSlave {
  public:
   virtual ~SerialSlave() = default;
   virtual void data_line(bool level, double at_ns) = 0;
   virtual void clock_line(bool level, double at_ns) = 0;
-  /// Level of the line back to the master at that instant.
+  /// Level of the line to the master at that time.
   virtual bool answer_line(double at_ns) = 0;
 };
 

@@ -46,7 +46,7 @@ TEST_F(Flash, ErasesOneSectorAndWaitsUntilItIsDone) {
   EXPECT_EQ(cell(1, 0), std::byte{0xFF});
   EXPECT_EQ(cell(0, 0), std::byte{1}) << "not its neighbour";
   EXPECT_TRUE(chip.flash.is_locked());
-  EXPECT_FALSE(chip.flash.cache_is_stale()) << "the data cache forgot what was erased";
+  EXPECT_FALSE(chip.flash.cache_is_stale()) << "the data cache was reset after the erase";
   EXPECT_EQ(flash_interface().ACR & (7u << 8), 7u << 8) << "the caches are on as before";
 }
 
@@ -66,7 +66,7 @@ TEST_F(Flash, ProtectedSectorsAreAHardwareError) {
   EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::hardware_error);
   EXPECT_EQ(flash.erase(0), FlashResult::hardware_error);
   chip.flash.is_protected = false;
-  EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an error of before does not count";
+  EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an earlier error does not count";
 }
 
 /// Each sector of the chip has its number at its beginning and its end, so the test sees which sectors are erased.

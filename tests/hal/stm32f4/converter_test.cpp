@@ -67,7 +67,7 @@ TEST_F(Converter, ABrownOutThatLosesItsRangeIsFound) {
   EXPECT_EQ(converter.state(), ConverterState::registers_differ);
   EXPECT_FALSE(converter.a().is_healthy());
   EXPECT_FALSE(converter.b().is_healthy());
-  EXPECT_TRUE(converter.start()) << "started anew it is sound";
+  EXPECT_TRUE(converter.start()) << "it is sound after a new start";
   EXPECT_TRUE(converter.a().is_healthy());
 }
 
@@ -99,7 +99,7 @@ TEST_F(Converter, AShortedOutputIsClampedAndNamed) {
   for (const unsigned channel : {0u, 1u}) {
     start();
     chip.converter.short_out(channel);
-    EXPECT_TRUE(chip.converter.output_V(channel)) << "the clamp was asked for: the channel is not powered down";
+    EXPECT_TRUE(chip.converter.output_V(channel)) << "the clamp limits the current: the channel stays powered";
     watch_all();
     EXPECT_EQ(converter.state(), ConverterState::overloaded);
   }
@@ -109,7 +109,7 @@ TEST_F(Converter, AFrameThatIsDisturbedOnceIsNoFault) {
   start();
   chip.converter.answers = false;
   converter.watch();  // reads the register twice
-  EXPECT_NE(converter.state(), ConverterState::sound) << "twice is a fault";
+  EXPECT_NE(converter.state(), ConverterState::sound) << "two disturbed frames are a fault";
   chip.converter.answers = true;
   start();
   chip.converter.deaf_for_answers(1);
@@ -124,7 +124,7 @@ TEST_F(Converter, ADeadPortIsReportedAndTheSelectLineReleased) {
   EXPECT_TRUE(chip.port_a.level(4));
   converter.watch();
   EXPECT_EQ(converter.state(), ConverterState::silent);
-  chip.bus.take_complaints();  // of the frame that broke off
+  chip.bus.take_complaints();  // about the interrupted frame
 }
 
 TEST_F(Converter, AWordIsOutWithinTwoMicroseconds) {

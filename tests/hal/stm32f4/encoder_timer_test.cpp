@@ -83,7 +83,7 @@ TEST_F(Encoder, TellsTheIndexOnceAndWhetherOneWasMissed) {
   chip.timer2.index();
   EXPECT_TRUE(encoder.read_index().missed);
   chip.timer2.index();
-  EXPECT_FALSE(encoder.read_index().missed) << "and that is told once too";
+  EXPECT_FALSE(encoder.read_index().missed) << "it is reported once only";
 }
 
 /// 8 samples at 84 MHz: pulses shorter than 95 ns are noise.

@@ -185,7 +185,7 @@ TEST_F(Lines, ModesOfPinsAreKeptUntilABitOfThemChanges) {
   modes.remember();
   Pin(gpio_b(), 5).set(false);
   chip.port_c.put(6, Outside::low);
-  EXPECT_TRUE(modes.are_kept()) << "levels are no modes";
+  EXPECT_TRUE(modes.are_kept()) << "a level is not a mode";
   for (parts::PortPart* port : {&chip.port_a, &chip.port_b, &chip.port_c})
     for (const std::uint32_t offset : {0x00u, 0x04u, 0x08u, 0x0Cu, 0x20u, 0x24u}) {
       const std::uint32_t kept = port->read(offset);

@@ -87,7 +87,7 @@ TEST_F(Tachometers, AnOverrunIsCountedAndTheNextPeriodIsWholeAgain) {
   chip.pass_ms(5.0);
   EXPECT_EQ(scan.overruns(), 1u);
   EXPECT_GE(periods.size(), before + 4);
-  EXPECT_NEAR(x_reading.code, 4 * 0.35 / 3.3 * 4096, 4.0) << "samples lie where they belong";
+  EXPECT_NEAR(x_reading.code, 4 * 0.35 / 3.3 * 4096, 4.0) << "each sample is at its place";
   EXPECT_NEAR(y_reading.code, -4 * 0.65 / 3.3 * 4096, 4.0);
 }
 

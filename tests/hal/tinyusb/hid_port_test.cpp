@@ -159,14 +159,14 @@ TEST_F(HidPortOnBus, RefusesWhatItHasNoRoomForAndLosesNothing) {
   std::uint8_t sent = 0;
   while (sent < 100 && bus.out(kOut, bytes_of(report_of(sent))) == Outcome::done) ++sent;
   ASSERT_GT(sent, 1);
-  ASSERT_LT(sent, 100) << "a board that does not read must at some time answer NAK";
+  ASSERT_LT(sent, 100) << "a board that does not read must eventually answer NAK";
   HidReport got{};
   for (std::uint8_t i = 0; i < sent; ++i) {
     ASSERT_TRUE(port.receive(got));
     EXPECT_EQ(got, report_of(i));
   }
   EXPECT_FALSE(port.receive(got));
-  EXPECT_EQ(bus.out(kOut, bytes_of(report_of(200))), Outcome::done) << "with room again it listens again";
+  EXPECT_EQ(bus.out(kOut, bytes_of(report_of(200))), Outcome::done) << "it accepts reports again once there is room";
 }
 
 TEST_F(HidPortOnBus, TellsItsProgramWhenTheHostDoesNotFetch) {
@@ -227,7 +227,8 @@ TEST_F(HidPortOnBus, StallsDataThatComeWithARequestWhichAsksForThem) {
   for (const Request& request : backwards)
     EXPECT_EQ(bus.control(request, Bytes(64, 0xEE)).outcome, Outcome::stalled)
         << std::hex << int{request.type} << " " << int{request.code};
-  EXPECT_EQ(bus.control({0xA1, 0x01, 0x0100, 0, 64}).data, bytes_of(report_of(7))) << "it has not been written over";
+  EXPECT_EQ(bus.control({0xA1, 0x01, 0x0100, 0, 64}).data, bytes_of(report_of(7)))
+      << "the report must not be overwritten";
 }
 
 TEST_F(HidPortOnBus, AnswersTheRequestsOfItsClass) {

@@ -171,7 +171,7 @@ TEST_F(UsbipSocket, HoldsWhatTheBoardHasNoRoomFor) {
   HidReport got{};
   ASSERT_TRUE(port.receive(got));
   const auto late = reply(false);
-  ASSERT_TRUE(late) << "with room again the transfer that waited is taken";
+  ASSERT_TRUE(late) << "the waiting transfer is accepted once there is room";
   EXPECT_EQ(late->sequence, 100u + sent);
   for (std::uint8_t i = 0; i <= sent; ++i) {
     EXPECT_EQ(got, report_of(i));
@@ -187,15 +187,15 @@ TEST_F(UsbipSocket, TakesBackATransferThatWaits) {
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->command, 4u);
   EXPECT_EQ(taken->sequence, 21u);
-  EXPECT_EQ(taken->status, -104) << "ECONNRESET: it was waiting";
+  EXPECT_EQ(taken->status, -104) << "ECONNRESET: the transfer was waiting";
   const auto late = exchange(unlink(22, 20), false);
   ASSERT_TRUE(late);
-  EXPECT_EQ(late->status, 0) << "there is nothing left to take back";
+  EXPECT_EQ(late->status, 0) << "it has already been cancelled";
   ASSERT_TRUE(port.send(report_of(1)));
-  EXPECT_FALSE(reply(true)) << "a transfer that was taken back gets no reply";
+  EXPECT_FALSE(reply(true)) << "a cancelled transfer gets no reply";
   const auto next = exchange(submit(23, true, 1, 64), true);
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->data, bytes_of(report_of(1))) << "and its report is not lost";
+  EXPECT_EQ(next->data, bytes_of(report_of(1))) << "the report of the cancelled transfer is not lost";
 }
 
 TEST_F(UsbipSocket, StallsAnEndpointThatDoesNotExist) {

@@ -135,7 +135,8 @@ TEST(MachineDesign, TheSlowestAxisSetsThePace) {
   EXPECT_GT(bandwidth(design.own.axes[0]), 1.2 * bandwidth(design.own.axes[1]));
   EXPECT_NEAR(bandwidth(design.matched.axes[0]), bandwidth(design.own.axes[1]), 0.15 * bandwidth(design.own.axes[1]));
   EXPECT_EQ(design.limited_by, "axis y, which keeps a modulus margin of 0.4 no further");
-  EXPECT_EQ(designed({machine()[1], machine()[0]}, true).limited_by, design.limited_by) << "in the other order";
+  EXPECT_EQ(designed({machine()[1], machine()[0]}, true).limited_by, design.limited_by)
+      << "the order of the models does not matter";
   for (const host::LoopSet* set : {&design.matched, &design.own})
     for (const host::AxisLoop& loop : set->axes) EXPECT_GE(*loop.modulus, 0.4) << loop.model.name;
 }

@@ -132,9 +132,21 @@ TEST_F(Compare, SeveralModelsStandBesideEachOther) {
   ASSERT_EQ(both["models"].size(), 2u);
   EXPECT_LT(both["models"][0]["combined"], both["models"][1]["combined"]);
   const auto alone = nlohmann::json::parse(run_axistool("compare " + other + " " + record + " --json -", "").output);
-  EXPECT_EQ(both["models"][1]["channels"], alone["channels"]) << "company changes no figure";
+  EXPECT_EQ(both["models"][1]["channels"], alone["channels"]) << "a second model changes no figure of the first";
   EXPECT_EQ(both["combined"], both["models"][0]["combined"]);
   EXPECT_THAT(host::read_file(report), HasSubstr("\"name\":\"heavy.toml\""));
+}
+
+// After an effect was added, "does not fit" would hide what it has gained.
+TEST_F(Compare, TellsHowMuchTheEffectsOfTheModelGain) {
+  const std::string case_00 = AXIS_TEST_DATA "/drive-cases/single/case-00";
+  const ProgramRun run =
+      run_axistool("compare " + case_00 + "/model.toml " + case_00 + "/validate.csv --json " + folder.path("c.json"));
+  const auto json = nlohmann::json::parse(host::read_file(folder.path("c.json")));
+  EXPECT_GT(json["without_effects"]["times"], 2.0);
+  EXPECT_THAT(run.output,
+              HasSubstr(fmt::format("{:.3g} times better than without stribeck; the error is {:.3g} times",
+                                    json["without_effects"]["times"].get<double>(), json["combined"].get<double>())));
 }
 
 // A hand-written model does not name its training records. The validation record must not be proposed for training.

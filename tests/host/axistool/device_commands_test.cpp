@@ -85,7 +85,7 @@ TEST_F(DeviceCommands, SetParamsSaysWhatIsWrongAndChangesNothing) {
   std::ofstream(file("stage.toml")) << "format = \"axis-params/1\"\n[stage.kalman]\nk12 = 0.1\n";
   EXPECT_THAT(run("set-params " + file("stage.toml")).output, HasSubstr("--axis x"));
   EXPECT_EQ(run("set-params x.drive.fitted=true").exit_code, 9) << "fitted without a design";
-  EXPECT_EQ(run("diff-params --defaults").exit_code, 0) << "nothing of all this was taken";
+  EXPECT_EQ(run("diff-params --defaults").exit_code, 0) << "none of the refused values was set";
   EXPECT_EQ(run("set-params " + file("stage.toml") + " --axis y").exit_code, 0);
   EXPECT_EQ(json("get-params y.kalman.k12")["parameters"]["y.kalman.k12"], 0.1F);
 }
@@ -143,7 +143,7 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_NEAR(json("move x -2 --relative")["to"].get<double>(), 3.0, 0.01);
   EXPECT_EQ(run("jog z 10").exit_code, 2);
   const ProgramRun fast = run("jog x 5000");
-  EXPECT_EQ(fast.exit_code, 8) << "the board would go slower than it was told, and nobody would know";
+  EXPECT_EQ(fast.exit_code, 8) << "otherwise the board would silently move slower than commanded";
   EXPECT_THAT(fast.output, HasSubstr("x.limits.velocity = 250"));
   EXPECT_EQ(run("capture -o " + file("fast.csv") + " --jog 20:0.1,-5000:0.1").exit_code, 8);
   EXPECT_EQ(run("disable").exit_code, 0);
@@ -164,7 +164,7 @@ TEST_F(DeviceCommands, FaultsAreLogged) {
     return !faults["log"].empty();
   }));
   ASSERT_FALSE(faults["log"].empty());
-  const nlohmann::json entry = faults["log"].back();  // x; the other axis, not fitted, has none
+  const nlohmann::json entry = faults["log"].back();  // of x; the other axis is not fitted and has no entry
   EXPECT_EQ(entry["fault"], "host_heartbeat_lost");
   EXPECT_EQ(entry["axis"], "x");
   EXPECT_EQ(entry["activity"], "moving");
@@ -217,7 +217,7 @@ TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
   board_.end(SIGKILL);
   EXPECT_EQ(capture.wait(), 3);
   EXPECT_FALSE(std::filesystem::exists(file("long.csv")));
-  EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "what came is on disk";
+  EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "the received rows are on disk";
   EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
 }
 
@@ -237,6 +237,7 @@ TEST_F(DeviceCommands, TellAboutTheBoard) {
   EXPECT_EQ(info["format"], "axis-board/1");
   EXPECT_TRUE(info["simulated"].get<bool>());
   EXPECT_EQ(info["axes"][0]["state"], "not fitted");
+  EXPECT_THAT(run("capture x -o " + file("raw.csv") + " --for 0.1").output, HasSubstr("axis x is not fitted"));
   const nlohmann::json doctor = json("doctor");
   for (const auto& check : doctor["checks"]) EXPECT_NE(check["result"], "bad") << check;
   const nlohmann::json bench = json("bench --for 1");
@@ -283,6 +284,13 @@ TEST(DeviceOption, NamesWhatItTakes) {
   EXPECT_EQ(odd.exit_code, 2);
   EXPECT_THAT(odd.output, AllOf(HasSubstr("usb:SERIAL"), HasSubstr("socket:PATH")));
   EXPECT_THAT(run_axistool("info --device socket:/nowhere/at/all").output, HasSubstr("axistool sim"));
+}
+
+/// Catches a doctor that only repeats that it has found no board.
+TEST(Doctor, SaysWhatToCheckWhereNoBoardAnswers) {
+  const ProgramRun none = run_axistool("doctor --device usb:NOWHERE");
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.output, AllOf(HasSubstr("cable"), HasSubstr("udev rule"), HasSubstr("axistool sim")));
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST_P(ExciteRefuses, ToGoOnOutsideTheBox) {
   EXPECT_THAT(left.output, HasSubstr("left the box: travel"));
   const host::Record record = host::read_record(file("r.csv"));
   EXPECT_GT(*std::ranges::max_element(record.x), 2.0);
-  EXPECT_LT(*std::ranges::max_element(record.x), 4.0) << "2 mm to the edge, and the way of the stop";
+  EXPECT_LT(*std::ranges::max_element(record.x), 4.0) << "2 mm to the edge, plus the stopping distance";
   EXPECT_LT(std::abs(record.x.back() - record.x[record.size() - 20]), 0.002) << "it stands at the end";
 }
 
@@ -144,7 +144,7 @@ TEST_P(ExciteACoggingAxis, GoesOnWhereItHangs) {
   }
   const ProgramRun weak = excite("x steps --yes --box travel=40,speed=150,volts=0.15,time=5 --drive " + data_sheet());
   EXPECT_EQ(weak.exit_code, 8);
-  EXPECT_THAT(weak.output, HasSubstr("nothing moved")) << "and what never moves is told";
+  EXPECT_THAT(weak.output, HasSubstr("nothing moved")) << "an axis that never moves is reported";
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST_P(FaultyLogs, AreNamedByWhatTrainsAndJudges) {
     const std::string records = fmt::format("{} --train {} {} --validate {}", model, file("train-jog.csv"),
                                             file("train-steps.csv"), file("validate.csv"));
     expect_named("diagnose " + records, "");
-    if (!GetParam().fatal) continue;  // the search that continues is the same
+    if (!GetParam().fatal) continue;  // improve and add continue with the same search
     expect_named("improve " + records + " -o " + file("out.toml"), "out.toml");
     expect_named(fmt::format("add {} cogging --train {} {} --validate {} -o {}", model, file("train-jog.csv"),
                              file("train-steps.csv"), file("validate.csv"), file("out.toml")),

@@ -72,7 +72,7 @@ TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
   EXPECT_EQ(told["stopped_because"], "completed");
   EXPECT_NEAR(told["duration_s"], 1.435, 0.02);
   EXPECT_LT(told["contour_um"], 12.0);
-  EXPECT_GT(told["contour_um"], 0.5) << "an encoder of 2.4 um sees no less";
+  EXPECT_GT(told["contour_um"], 0.5) << "an encoder of 2.4 um cannot show a smaller error";
   const host::Record record = host::read_record(file("c.csv"));
   EXPECT_NEAR(*std::max_element(record.x.begin(), record.x.end()), 70.0, 0.05);
   EXPECT_NEAR(record.x.back(), 0.0, 0.02) << "it ends where it began";
@@ -141,7 +141,7 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   const auto told = nlohmann::json::parse(in);
   EXPECT_EQ(told["stopped_because"], "interrupted");
   EXPECT_LT(told["duration_s"], 40.0);
-  EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
+  EXPECT_LT(told["contour_um"], 12.0) << "also while it stops";
 }
 
 /// Runs a program on a pseudo-terminal and types keys.
@@ -188,10 +188,10 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
     EXPECT_EQ(terminal.wait(), 0);
     std::ifstream in(file("run.json"));
     const auto told = nlohmann::json::parse(in);
-    EXPECT_LT(told["contour_um"], 12.0) << "on the path at any speed";
+    EXPECT_LT(told["contour_um"], 12.0) << "the axes stay on the path at any speed";
     return host::read_record(file("run.csv")).t_s.back() / told["planned_s"].get<double>();
   };
-  EXPECT_NEAR(duration("+++<<<<<<<<<<>"), 1.0, 0.05) << "no feed above the plan; no rapid in it";
+  EXPECT_NEAR(duration("+++<<<<<<<<<<>"), 1.0, 0.05) << "feeds stay at the planned speed, and the program has no rapid";
   const double slowed = duration("-----");
   EXPECT_GT(slowed, 1.2);
   EXPECT_LT(slowed, 2.05);

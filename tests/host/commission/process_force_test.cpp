@@ -143,8 +143,8 @@ class ProcessForce : public testing::Test {
   Eigen::Matrix<double, 3, Eigen::Dynamic> estimator_;
 };
 
-/// Catches an estimate in another unit, with friction in it or of the wrong sign; a band that holds no 95 % of the
-/// estimates, or many more; a delay that is not the machine's. Rwd of 1 V2 is left out: its noise hides the force.
+/// Catches an estimate in a wrong unit, of the wrong sign or with friction in it; a band that contains far fewer or
+/// more than 95 % of the estimates; and a wrong delay. Rwd of 1 V2 is left out: its noise hides the force.
 TEST_F(ProcessForce, IsSeenWithinTheBandAndTheDelayThatAreStated) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kPeak_N = 400.0, kTooth_Hz = 10.0;
@@ -167,7 +167,7 @@ TEST_F(ProcessForce, IsSeenWithinTheBandAndTheDelayThatAreStated) {
   }
 }
 
-/// Catches a column that holds friction where the board does not feed it forward, or counts it twice where it does.
+/// Catches a column that contains friction if the board does not feed it forward, or subtracts it twice if it does.
 TEST_F(ProcessForce, IsTheSameColumnWithoutFrictionFeedforward) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   use(1e-2);
@@ -179,8 +179,8 @@ TEST_F(ProcessForce, IsTheSameColumnWithoutFrictionFeedforward) {
   EXPECT_NEAR(without.delayed_error_N, with.delayed_error_N, 0.1 * with.delayed_error_N);
 }
 
-/// Catches a limit that does not act, acts on friction that is fed forward, is released by an override of the feed
-/// alone, or leaves the path; one that the operator cannot release.
+/// Catches a limit that does not act, that acts on friction that is fed forward, or that a feed override releases; axes
+/// that leave the path; and a hold that the operator cannot release.
 TEST_F(ProcessForce, HoldsTheFeedAboveItsLimitUntilReleased) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kLimit_N = 500.0, kGrowth_N_s = 2000.0, kFeed_mm_s = 20.0, kLength_mm = 60.0;

@@ -58,8 +58,8 @@ class TunedEstimator : public testing::Test {
   std::unique_ptr<host::CommissionSession> session_;
 };
 
-/// Catches figures of other runs, a value that does not trade error for noise, a softer axis, a variance of another
-/// sensor, and a choice that later designs do not use.
+/// Catches figures of other runs, a chosen value that is not the least noisy one with a small error, a softer axis, the
+/// variance of another sensor, and a choice that later designs do not use.
 TEST_F(TunedEstimator, IsTheCalmestThatIsNoSofter) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   host::tune_estimator(*session_);
@@ -84,7 +84,7 @@ TEST_F(TunedEstimator, IsTheCalmestThatIsNoSofter) {
     EXPECT_NEAR(tried[i]["rms_um"], (once + again) / 2.0, 0.01 * once);
   }
   std::printf("%s\n", found["why"].get<std::string>().c_str());
-  // On this machine every livelier value follows worse.
+  // On this machine, every larger value has a larger following error.
   ASSERT_LT(place, tried.size());
   EXPECT_LE(tried[place]["compliance_um_N"].get<double>(), 1.09 * found["first_compliance_um_N"].get<double>());
   ASSERT_GT(place, 0u);
@@ -111,8 +111,8 @@ std::pair<std::size_t, std::size_t> steady_rows(const host::Record& run) {
   return {begin + best / 5, begin + best};
 }
 
-/// Catches a stiffness of another unit, of another loop, or without the estimator's part: the machine itself, under a
-/// sinusoidal force and in motion, answers with the amplitude that the choice counts with (the model is 5 % off).
+/// Catches a stiffness in a wrong unit, of another loop, or without the estimator's part. The machine is moved under a
+/// sinusoidal force; its amplitude must be the one on which the choice is based (the model is 5 % off).
 TEST_F(TunedEstimator, YieldsToAForceAsStated) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   host::tune_estimator(*session_);

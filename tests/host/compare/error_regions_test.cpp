@@ -83,6 +83,14 @@ TEST_F(Regions, NameTheTimeOfAPassingEvent) {
   EXPECT_NEAR(to_s, 6.4, 0.1);
 }
 
+// Catches "the model fails in motion (75 % of the squared error in 86 % of the samples)".
+TEST(WorstRegion, HasMoreOfTheSquaredErrorThanOfTheSamples) {
+  const std::vector<host::ErrorRegion> regions{{"rest", "later", "in motion", 0.75, 0.86, 10.0, 0.88},
+                                               {"direction", "forward", "forward", 0.36, 0.22, 15.0, 0.34}};
+  EXPECT_EQ(host::where_it_fails(regions),
+            "the model fails forward (36 % of the squared error in 22 % of the samples)");
+}
+
 TEST_F(Regions, AModelThatFitsStandsOutNowhere) {
   const host::Record record = HandMade::record();
   const sim::DriveDescription model = HandMade::model();

@@ -86,7 +86,7 @@ TEST(ShippedDrive, MissingFolderIsNamed) {
   host::Report report("t");
   try {
     host::show_shipped_drive("/nowhere/case", report);
-    FAIL() << "read what is not there";
+    FAIL() << "a missing folder was accepted";
   } catch (const host::Failure& failure) {
     EXPECT_EQ(failure.code, host::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), HasSubstr("/nowhere/case"));

@@ -39,7 +39,7 @@ TEST(ContourError, RowsThatWereLostAreNoError) {
   for (const double error_um : contour_error_um(capture, path, scale)) ASSERT_LT(error_um, 1e3 * kCount_mm);
 }
 
-/// References rounded down as on a board: at the reversal the nearest point of the plan is always one before it.
+/// References are rounded down, as on a board. Near the reversal, the nearest point of the plan is then before it.
 TEST(ContourError, ALineThereAndBackEndsWhereItBegan) {
   host::PathMove there, back;
   there.curve = host::PathCurve::line({0, 0, 0}, {60, 60, 0});

@@ -127,7 +127,7 @@ TEST(Flash, WritesNothingWhereReadProtectionIsOn) {
     EXPECT_TRUE(bench.sent.empty());
     const auto names = bench.names();
     EXPECT_EQ(std::count(names.begin(), names.end(), "dfu-util"), 0);
-    EXPECT_EQ(names.back(), "reset high") << "the board is let go";
+    EXPECT_EQ(names.back(), "reset high") << "the board leaves its bootloader";
   }
 }
 

@@ -277,8 +277,8 @@ TEST(DeadEncoder, LetsASlowJogGoOnForATenthOfItsPitchAtMost) {
   }
 }
 
-/// The receivers of an encoder that is unplugged at rest report it, so that the brake catches the weight. Where both
-/// sensors die before an axis is enabled, nothing else would (is_blind).
+/// The receivers of an encoder that is unplugged at rest report it, so that the brake holds the weight. If both
+/// sensors die before an axis is enabled, nothing else shows it (is_blind).
 TEST(DeadEncoder, OfAnAxisUnderWeightIsFoundAtRestByItsReceivers) {
   for (const bool light : {false, true}) {
     const FaultTrial trial{.first = {host::find_injection("encoder_cut"), 0, 0.0},

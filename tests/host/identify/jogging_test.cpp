@@ -181,7 +181,7 @@ TEST(JoggingForms, TooFewSpeedsAreRefusedWithWhatToJog) {
   for (const auto method : {FrictionMethod::joint, FrictionMethod::paper}) {
     try {
       host::identify_friction(host::MeasurementGate(believed(kAxes[0])).admit({record}), believed(kAxes[0]), method);
-      FAIL() << "accepted one speed";
+      FAIL() << "a single speed was accepted";
     } catch (const host::Failure& failure) {
       EXPECT_EQ(failure.code, host::ExitCode::refused);
       EXPECT_THAT(failure.what(), HasSubstr("Jog at"));

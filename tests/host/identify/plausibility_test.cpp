@@ -54,7 +54,7 @@ TEST(Plausibility, AFitOnItsBoundIsNoFinding) {
   sim::DriveDescription typed = with("load_dependent_friction", "coefficient", 0.9, {0.85, 0.95});
   typed.find("load_dependent_friction")->ci95.clear();
   typed.find("load_dependent_friction")->from.clear();
-  EXPECT_EQ(doubts(typed), "") << "not fitted: somebody knows";
+  EXPECT_EQ(doubts(typed), "") << "a value that was not fitted is not doubted";
 }
 
 TEST(Plausibility, AnAmplitudeWithinItsIntervalIsNone) {

@@ -62,7 +62,8 @@ TEST(PositionTorque, AWeightBeyondFrictionLeavesAModelThatCanBeRead) {
   constexpr double kWeight = 2.5 * kCoulomb;
   const host::Identification found = identified(lively, [](const Point&) { return kWeight; });
   ASSERT_TRUE(found.estimate.negative.has_value());
-  EXPECT_NEAR(found.estimate.negative->value, kWeight - kCoulomb, 0.1 * kCoulomb) << "the estimate says what it found";
+  EXPECT_NEAR(found.estimate.negative->value, kWeight - kCoulomb, 0.1 * kCoulomb)
+      << "the estimate itself is not changed";
   const sim::DriveDescription model = read_again(found);
   EXPECT_NEAR(model.find("coulomb")->at("level"), kCoulomb, 0.05 * kCoulomb);
   EXPECT_THAT(found.warnings, Contains(HasSubstr("friction cannot drive the axis")));

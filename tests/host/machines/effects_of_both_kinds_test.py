@@ -12,13 +12,15 @@ import tomllib
 from pathlib import Path
 
 AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
-# seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
-# alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset
-# with friction that no motion separates from a constant torque; a constant torque beside nonlinear viscous friction,
-# which a base fitted to the motion without it takes over; static friction that grows with rest, whose late breakaways
-# outweigh every other window in a mean square, beside nonlinear viscous friction and beside a constant torque
+# (seed, number of hidden effects, case). Hidden are:
+# - a lag of the current loop and backlash, whose gap shows only in the torque
+# - friction of two kinds and a tachometer's gain, which shows only in the motion
+# - a tachometer's offset, and friction that no motion separates from a constant torque
+# - a constant torque and nonlinear viscous friction, which a base fitted to the motion alone absorbs
+# - twice static friction that grows with rest, whose late breakaways dominate a mean square: with nonlinear viscous
+#   friction, and with a constant torque
 CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (910, 2, 5), (601, 2, 2), (910, 2, 3))
-# a gap with friction on either side beside friction's memory: the gap alone is added
+# a gap with friction on both sides, and frictional memory: only the gap must be added
 SHARED_FRICTION = (601, 2, 9)
 
 

@@ -19,7 +19,7 @@ import logged_machines_test as logged
 SEEDS = int(os.environ.get("SEEDS", "16"))
 TRUTH = {"J_kg_m2": 0.004, "B_Nm_s_per_rad": 0.008, "positive_Nm": 0.3, "negative_Nm": -0.3}
 NOISE_A = 0.02
-# Half a sample minus half of a fortieth: in each small step the machine moves at the step's final speed.
+# samples: half of one, minus half of an integration step of 1/40, which moves the machine at the step's final speed
 HELD = 0.4875
 
 
@@ -33,7 +33,7 @@ def pushes(seed: int, rows: int):
 
 
 def shifted(log, samples):
-    """The log of a logger that averages the torque of each row over a period beginning `samples` samples later."""
+    """The log if each row holds the mean torque of the period that begins `samples` samples after the row."""
     whole, part = math.floor(samples), samples - math.floor(samples)
     
     def at(row: int) -> float:
@@ -74,8 +74,8 @@ class EffortTiming(logged.Log):
                 self.assertIn(diagnosis["verdict"]["status"], ("adequate", "parameters"))
 
     def test_an_error_of_the_encoder_does_not_move_the_instant(self) -> None:
-        # Beside inertia and friction alone it does, and what that leaves at steps of the torque looks like a spring.
-        # It moves the inertia as well, by which the error's amplitude is fitted.
+        # In a fit of inertia and friction alone it would, and the residual at steps of the torque would look like a
+        # spring. It would also bias the inertia, and with it the amplitude of the error.
         for name, log in self.logs.items():
             read = [(effort, x + 0.01 * math.sin(4.0 * x + 1.0)) for effort, x in log]
             self.write(name, shifted(read, -0.25), NOISE_A)
@@ -86,7 +86,7 @@ class EffortTiming(logged.Log):
         self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 3.0)
 
     def test_intervals_hold_the_truth(self) -> None:
-        # Not the inertia: its interval, 0.03 % wide, is narrower than the bias of filters and differences.
+        # Except the inertia, whose interval of 0.03 % is narrower than the bias by filters and differences.
         names = ["B_Nm_s_per_rad", "positive_Nm", "negative_Nm", "effort_timing"]
         hits = dict.fromkeys(names, 0)
         for seed in range(SEEDS):

@@ -21,7 +21,7 @@ TEST(KnownParameters, AreNamedAsInTheModelFile) {
   EXPECT_TRUE(model.effects[0].held.contains("J"));
   EXPECT_TRUE(model.effects[1].held.contains("period"));
   EXPECT_TRUE(model.effects[2].held.contains("period"));
-  EXPECT_TRUE(model.effects[3].held.empty()) << "another effect's key of that name";
+  EXPECT_TRUE(model.effects[3].held.empty()) << "the key of that name belongs to another effect";
 }
 
 TEST(KnownParameters, AreBelievedAtTheirValue) {

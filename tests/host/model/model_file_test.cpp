@@ -166,7 +166,7 @@ TEST(ReadModel, SeveralHarmonicsButOneInertia) {
   const std::string cogging = "[[effect]]\nkind = \"cogging\"\ncosine_Nm = 0.1\nsine_Nm = 0.0\nperiod_mm = 2.5\n";
   EXPECT_EQ(host::parse_model(kPaperX + cogging + cogging, "drive.toml").effects.size(), 6u);
   EXPECT_THAT(message_of(std::string(kPaperX) + "[[effect]]\nkind = \"inertia\"\nJ_kg_m2 = 1.0\n"),
-              AllOf(HasSubstr("line 37"), HasSubstr("inertia stands in the model twice")));
+              AllOf(HasSubstr("line 37"), HasSubstr("inertia is in the model twice")));
 }
 
 /// The destruction of a tree with 50,000 levels exhausts the stack, so such keys are rejected before it is built.
@@ -275,8 +275,9 @@ TEST(ReadModel, HoldsNoMoreThanAModelDoes) {
 TEST(ReadModel, OneFormForBothDirectionsOrOneForEach) {
   EXPECT_THAT(message_of("negative_Nm = -1.656\n", ""),
               AllOf(HasSubstr("missing field negative_Nm"), HasSubstr("level_Nm for both directions")));
-  EXPECT_THAT(message_of("negative_Nm = -1.656\n", "level_Nm = 2.0\n"),
-              AllOf(HasSubstr("level_Nm stands beside a value for one direction"), HasSubstr("keep one form")));
+  EXPECT_THAT(
+      message_of("negative_Nm = -1.656\n", "level_Nm = 2.0\n"),
+      AllOf(HasSubstr("level_Nm is given together with a value for one direction"), HasSubstr("keep one form")));
 }
 
 TEST(ReadModel, WrongTypes) {
@@ -379,7 +380,7 @@ TEST(WriteModel, KeepsTheOrdersOfAPeriod) {
 TEST(ReadModel, OrdersInOneFormAndOnce) {
   const std::string text = std::string(kPaperX) + kSeveralOrders;
   EXPECT_THAT(message_of(replaced(text, "period_mm", "cosine_Nm = 1.0\nperiod_mm")), HasSubstr("keep one form"));
-  EXPECT_THAT(message_of(replaced(text, "order = 6", "order = 1")), HasSubstr("order 1 stands twice"));
+  EXPECT_THAT(message_of(replaced(text, "order = 6", "order = 1")), HasSubstr("order 1 is given twice"));
   EXPECT_THAT(message_of(replaced(text, "{ order = 6,", "{")), HasSubstr("order = 1"));
   EXPECT_THAT(message_of(replaced(text, "order = 6, cosine_Nm", "order = 6, cosine_mm")), HasSubstr("cosine_mm"));
 }

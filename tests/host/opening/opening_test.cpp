@@ -175,7 +175,8 @@ TEST_F(Opening, AScaleOnTheTableIsTheSecondPosition) {
   ASSERT_EQ(opening.records().size(), 1u);
   const host::Record& record = opening.records()[0]->record;
   EXPECT_EQ(channels(opening.files[0])["glass scale [um]"].taken_as, "x2_mm");
-  EXPECT_DOUBLE_EQ(channels(opening.files[0])["glass scale [um]"].factor, -1e-3) << "it counts the other way";
+  EXPECT_DOUBLE_EQ(channels(opening.files[0])["glass scale [um]"].factor, -1e-3)
+      << "the scale counts in the other direction";
   ASSERT_TRUE(record.has_table_position());
   EXPECT_NEAR(record.x2[1000] - record.x2[0], record.x[1000] - record.x[0], 0.02);
 }

@@ -29,7 +29,7 @@ def logs(data):
 
 
 def truth(path):
-    """The factor of each quantity that needs no question."""
+    """The expected factors of the quantities that are recognised without a question."""
     name = str(path)
     known = {'t_s': 1e-3 if any(part in name for part in IN_MS) else 1.0}
     if any(part in name for part in IN_RPM):

@@ -39,7 +39,7 @@ TEST(Backup, KeepsTablesOfPitchErrors) {
   EXPECT_EQ(message_of(text), "restored") << "it remains a file of parameters";
   EXPECT_EQ(host::pitch_of_backup(text, "b.toml", 2), tables);
   EXPECT_EQ(host::pitch_of_backup(host::format_backup(some_values()), "b.toml", 2), std::nullopt)
-      << "an older backup says nothing of tables";
+      << "an older backup contains no tables";
   const auto refusal = [&](std::string_view from, std::string_view to, std::size_t axes = 2) {
     std::string changed = text;
     changed.replace(changed.rfind(from), from.size(), to);

@@ -37,7 +37,7 @@ sim::EffectEntry cogging(double cosine, double sine, double period_mm) {
 TEST(CompensationParameters, AreAllOffForAModelWithoutSuchEffects) {
   const auto list = host::compensation_parameters(paper_x_with({}));
   for (const char* part : {"cogging", "presliding", "position_friction", "backlash"})
-    EXPECT_EQ(value_of(paper_x_with({}), std::string(part) + ".on"), 0.0) << "an earlier download is taken back";
+    EXPECT_EQ(value_of(paper_x_with({}), std::string(part) + ".on"), 0.0) << "an earlier compensation is switched off";
   EXPECT_EQ(value_of(paper_x_with({}), "calibration.tachometer_gain"), 1.0);
   EXPECT_EQ(list.size(), 6u);
 }

@@ -116,6 +116,8 @@ class Notebook(unittest.TestCase):
         for result, word in ((record, "u_V"), (found, "J_kg_m2"), (compared, "x_mm")):
             self.assertIn("<table>", result._repr_html_())
             self.assertIn(word, result._repr_html_())
+            self.assertIn(word, repr(result))
+            self.assertLess(len(repr(result)), 4000, "a table, not all of the data")
 
     def test_plots_are_given_the_figures(self) -> None:
         """Fake axes record the plots instead of matplotlib; without matplotlib plot() says how to install it."""

@@ -10,7 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 cp -a "$project/host/python" "$folder/source"
 : "${AXIS_BUILD:?names the build tree}"
 if (cd "$folder/source" && AXIS_BUILD= $python setup.py -q build_ext > "$folder/log" 2>&1) ||
-  ! grep -q 'install from its own folder' "$folder/log"; then
+  ! grep -q 'own folder host/python' "$folder/log"; then
   echo "without the project it does not say what is wrong:" >&2; cat "$folder/log" >&2; exit 1
 fi
 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore $python -m pip install --quiet --no-build-isolation --no-deps \

@@ -41,7 +41,7 @@ TEST(CutRecord, KeepsTheRowsBetweenTheTimesAndTheirStamps) {
   EXPECT_EQ(part.w.front(), speed(0.1));
   EXPECT_THAT(part.header.at("cut"), HasSubstr("r.csv"));
   const host::Record again = cut(host::format_record(part), 0.1, 0.15);
-  EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "both cuts are told";
+  EXPECT_TRUE(again.header.contains("cut") && again.header.contains("cut_2")) << "the header states both cuts";
 }
 
 /// Messages recommend to cut a record at a fault, so the fault must not prevent the cut.
@@ -52,7 +52,7 @@ TEST(CutRecord, WhatIsCutOffNeedNotBeARecord) {
   const std::string gap = text.substr(0, text.find("\n0.2,") + 1) + text.substr(text.find("\n0.25,") + 1);
   EXPECT_THROW(host::parse_record(gap, "r.csv"), host::Failure);
   EXPECT_EQ(cut(gap, 0.25, 1.0).size(), 150u);
-  EXPECT_THROW(cut(gap, 0.1, 0.3), host::Failure) << "a gap within is none the less";
+  EXPECT_THROW(cut(gap, 0.1, 0.3), host::Failure) << "a gap within the part is still refused";
 }
 
 TEST(CutRecord, TooLittleIsRefused) {

@@ -158,7 +158,7 @@ TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
   EXPECT_EQ(seen["charts"], 4);
   EXPECT_EQ(seen["fetched"], 0);
   EXPECT_THAT(seen["title"].get<std::string>(), testing::StartsWith("Drive </script><script>"))
-      << "user text stands in the title as text";
+      << "user text is shown in the title as text";
   for (const nlohmann::json& chart : seen["pixels"]) {
     for (const nlohmann::json& pixels : chart) EXPECT_GT(pixels.get<int>(), 30) << seen["pixels"];
   }
@@ -224,7 +224,7 @@ TEST_F(Browser, ADarkScreenGetsADarkPageThatTellsWhatItShows) {
   EXPECT_LT(seen["ground"].get<double>(), 0.2);
   EXPECT_LT(seen["figure"].get<double>(), 0.2);
   EXPECT_GT(seen["ink"].get<double>(), 0.8);
-  EXPECT_EQ(seen["measured"], "#b4c0cc") << "lines are lighter too";
+  EXPECT_EQ(seen["measured"], "#b4c0cc") << "lines are lighter on a dark screen";
   EXPECT_EQ(seen["spoken"], "speed [rad/s] over time: measured from -2 to 3");
 }
 
@@ -272,7 +272,7 @@ TEST_F(Browser, APlaneKeepsAUnitOfXAsLongAsAUnitOfY) {
     for (const nlohmann::json& look : seen) {
       EXPECT_NEAR(look["scales"][0].get<double>(), look["scales"][1].get<double>(), 1e-9) << seen.dump(1);
     }
-    EXPECT_LT(seen[1]["scales"][0], seen[0]["scales"][0]) << "the drag magnifies";
+    EXPECT_LT(seen[1]["scales"][0], seen[0]["scales"][0]) << "the drag zooms in";
     EXPECT_EQ(seen[2], seen[0]) << "a double click shows the whole again";
     EXPECT_LT(seen[3]["width"], seen[0]["width"]);
     for (const nlohmann::json& look : {seen[0], seen[3]}) {

@@ -96,12 +96,12 @@ TEST(BinnedCurve, AGapStaysAGapAndThinBinsJoinTheirNeighbours) {
     samples += curve.samples[k];
     if (std::isnan(curve.mean[k])) {
       ++gaps;
-      EXPECT_NEAR(curve.x[k], 50.75, 1e-9) << "between the stretches";
+      EXPECT_NEAR(curve.x[k], 50.75, 1e-9) << "between the two intervals with samples";
       EXPECT_TRUE(std::isnan(curve.lower[k]) && std::isnan(curve.upper[k]));
       continue;
     }
     EXPECT_GE(curve.samples[k], 10.0);
-    EXPECT_LT(curve.mean[k], 30.0) << "three outliers are no bin of their own";
+    EXPECT_LT(curve.mean[k], 30.0) << "three outliers do not form a bin";
   }
   EXPECT_EQ(gaps, 1u);
   EXPECT_EQ(samples, static_cast<double>(x.size())) << "none is lost";

@@ -43,7 +43,7 @@ TEST(Access, ARequestWithoutTokenUnderAnotherNameOrFromAnotherSiteIsRefused) {
   for (const char* path : {"/", "/?token=", "/?token=0123", "/page/main.js", "/api/folder", "/api/jobs", "/nothing"})
     EXPECT_EQ(status_of(path, {}), 403) << path;
   EXPECT_EQ(status_of("/?token=" + served.token, {}), 200);
-  EXPECT_EQ(status_of("/api/folder?token=" + served.token, {}), 403) << "the token opens the page alone";
+  EXPECT_EQ(status_of("/api/folder?token=" + served.token, {}), 403) << "the token in the address opens only the page";
   EXPECT_EQ(status_of("/api/folder", served.own), 200);
   httplib::Headers foreign = served.own;
   foreign.emplace("Host", "rebound.example:" + std::to_string(served.server.port()));

@@ -25,7 +25,7 @@ TEST(ServeCommand, PrintsItsAddressAndEndsAtInterruptAndTerm) {
     EXPECT_EQ(serve.end(signal), 0);
     EXPECT_THAT(host::read_file(printed), MatchesRegex("http://127\\.0\\.0\\.1:[0-9]+/\\?token=[0-9a-f]+\n"));
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path(""))) << "looking leaves nothing behind";
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path(""))) << "showing the page writes no file";
 }
 
 TEST(ServeCommand, RefusesATakenPortAFolderThatIsNoneAndNonsense) {

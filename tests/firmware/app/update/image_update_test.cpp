@@ -119,7 +119,7 @@ TEST_F(ImageUpdate, WhatAProbeFlashedRunsWhateverTheSlotsHold) {
     EXPECT_TRUE(slots.is_program_flashed());
   }
   install(kNew);
-  EXPECT_EQ(header_of(kThird).crc, slots.header(kA).crc) << "kept in place of what was there";
+  EXPECT_EQ(header_of(kThird).crc, slots.header(kA).crc) << "the slot now keeps the flashed image";
 }
 
 TEST_F(ImageUpdate, WithoutAWholeProgramTheNewestWholeSlotRuns) {
@@ -166,10 +166,10 @@ TEST_F(ImageUpdate, AFlashThatFailsKeepsTheOldImage) {
   ASSERT_EQ(finish(), UpdateResult::ok);
   flash.refuses[kB] = true;
   ASSERT_TRUE(boot());
-  EXPECT_TRUE(runs(kOld)) << "an image that cannot be marked as tried would be tried for ever";
+  EXPECT_TRUE(runs(kOld)) << "an image that cannot be marked as tried must not start: it would be tried at each boot";
   flash.refuses = {true, false, false};
   ASSERT_TRUE(boot());
-  EXPECT_TRUE(runs(kOld)) << "the place for programs cannot be written: it holds what it held";
+  EXPECT_TRUE(runs(kOld)) << "the program area cannot be written, so it keeps its image";
   flash.refuses = {};
   ASSERT_TRUE(boot());
   flash.refuses[kA] = true;
