@@ -37,8 +37,12 @@ Values difference(const Values& a, const Values& b) {
   return result;
 }
 
+/// The squared value, 0 for a sample without one.
+double square_of(double value) { return std::isfinite(value) ? value * value : 0.0; }
+
 double sum_of_squares(const Values& values) {
-  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return std::accumulate(values.begin(), values.end(), 0.0,
+                         [](double sum, double value) { return sum + square_of(value); });
 }
 
 /// Share of the squared trace that its means over the coordinate explain, 0..1.
@@ -107,8 +111,7 @@ void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const Rec
 /// The record in which the trace is strongest.
 std::size_t strongest_record(const FoundEffect& effect) {
   Values squares(1 + std::ranges::max(effect.without.record));
-  for (std::size_t k = 0; k < effect.trace.size(); ++k)
-    squares[effect.without.record[k]] += effect.trace[k] * effect.trace[k];
+  for (std::size_t k = 0; k < effect.trace.size(); ++k) squares[effect.without.record[k]] += square_of(effect.trace[k]);
   return static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
 }
 
@@ -134,8 +137,8 @@ std::array<double, 2> strongest_seconds(const FoundEffect& effect) {
   for (std::size_t k = 0; k < t_s.size(); ++k) {
     if (effect.without.record[k] != *effect.only_record) continue;
     if (sum == 0.0) first = k;
-    sum += effect.trace[k] * effect.trace[k];
-    for (; t_s[k] - t_s[first] > kLength_s; ++first) sum -= effect.trace[first] * effect.trace[first];
+    sum += square_of(effect.trace[k]);
+    for (; t_s[k] - t_s[first] > kLength_s; ++first) sum -= square_of(effect.trace[first]);
     if (sum <= most) continue;
     most = sum;
     begin_s = t_s[first];
@@ -269,6 +272,7 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
   }
   if (effect.over.along == &ResidualEffort::t_s) effect.only_record = strongest_record(effect);
   if (effect.only_record || effect.over.folded) trace_of(effect, model, shown);
+  if (effect.over.folded) most = carried_share(effect.without, effect.trace, effect.over);  // of unblurred samples
   constexpr double kLeastCarried = 0.4;
   if (most < kLeastCarried) {
     effect.only_record = strongest_record(effect);

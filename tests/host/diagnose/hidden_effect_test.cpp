@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "host/diagnose/found_effect.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 
@@ -36,6 +38,20 @@ TEST_P(HiddenEffect, IsFoundAndNothingElse) {
     EXPECT_THAT(verdict.effects, UnorderedElementsAreArray(hidden.effects));
   }
   EXPECT_LT(diagnosis.after_validate, diagnosis.before_validate);
+
+  // Catches seconds without the effect, for example where the axis is too fast for a sample to show a ripple.
+  for (const host::FoundEffect& effect : host::found_effects(diagnosis.best, verdict.effects, diagnosis)) {
+    if (!effect.cutout_s) continue;
+    const auto [from_s, to_s] = *effect.cutout_s;
+    double inside = 0.0, outside = 0.0, rows_inside = 0.0, rows_outside = 0.0;
+    for (std::size_t k = 0; k < effect.trace.size(); ++k) {
+      if (effect.without.record[k] != *effect.only_record || !std::isfinite(effect.trace[k])) continue;
+      const bool is_inside = effect.without.t_s[k] >= from_s && effect.without.t_s[k] <= to_s;
+      (is_inside ? inside : outside) += effect.trace[k] * effect.trace[k];
+      (is_inside ? rows_inside : rows_outside) += 1.0;
+    }
+    EXPECT_GT(inside / rows_inside, outside / rows_outside) << effect.kind;
+  }
 }
 
 /// A found effect must have the size of the hidden one, in the unit of the machine, over the coordinate in which it
