@@ -57,6 +57,23 @@ double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis
 
 double level_of_both(const SetLevels& level) { return std::sqrt(level.train * level.validate); }
 
+namespace {
+
+double combined_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.train_after * candidate.after); }
+
+}  // namespace
+
+bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double share) {
+  const double level = level_of_both(one.level), least = level_of_both(other.level);
+  return level < least &&
+         (level < (1.0 - share) * least || combined_of_both(one) < (1.0 - share) * combined_of_both(other));
+}
+
+double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more) {
+  return std::max(explained_share(level_of_both(less.level), level_of_both(more.level)),
+                  explained_share(combined_of_both(less), combined_of_both(more)));
+}
+
 std::size_t parameters_of(const JudgedCandidate& candidate) {
   std::size_t count = 0;
   for (const std::string& kind : candidate.kinds)

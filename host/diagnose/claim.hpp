@@ -35,6 +35,12 @@ double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis
 /// Geometric mean of both levels.
 double level_of_both(const SetLevels& level);
 
+/// Whether one candidate has the lower level, and the lower level or combined error by more than `share`.
+bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double share);
+
+/// explained_share() of what one candidate leaves by another, the larger one of level and combined error.
+double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more);
+
 /// Number of parameters that a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);
 

@@ -47,7 +47,7 @@ struct JudgedCandidate {
   SetLevels level;          ///< 0 if the force balance decided
   double confidence = 0.0;  ///< probability that the improvement is not by chance, 0..1
   double luck = 1.0;        ///< p-value of the gain, as the best of all tried candidates, 0..1
-  /// Least p-value, 0..1, of the gain of a candidate with one effect more, or of a better one with as many.
+  /// Least p-value, 0..1, of the gain of a better candidate with at most one effect more.
   double suffices = 1.0;
   double probability = 0.0;  ///< probability of these effects given these records, 0..1
   sim::DriveDescription model;

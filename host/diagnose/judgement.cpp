@@ -37,8 +37,10 @@ std::vector<const Candidate*> all_of(const Findings& findings) {
 
 /// Levels over the floors of `best`.
 SetLevels levels_of(const SetError& train, const SetError& validate, const Candidate& best) {
-  return {best.training.robust * std::exp(train.surprise - best.training.surprise),
-          best.validation.robust * std::exp(validate.surprise - best.validation.surprise)};
+  const auto level = [](const SetError& error, const SetError& least) {
+    return std::max(1.0, least.robust) * std::exp(error.surprise - least.surprise);
+  };
+  return {level(train, best.training), level(validate, best.validation)};
 }
 
 void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>& all, const Candidate& best,
@@ -50,16 +52,13 @@ void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>&
     judged = judge_candidate(*all[k], diagnosis.training, diagnosis.validation, before, all.size());
     judged.level = levels_of(all[k]->training, all[k]->validation, best);
     if (diagnosis.judged_as_compared()) judged.error = diagnosis.rows.error_of(judged.model);
-    const auto tells_against = [&](const Candidate& other) {
-      if (other.kinds.size() == judged.kinds.size() + 1) return holds_all(other.kinds, judged.kinds);
-      return other.kinds.size() == judged.kinds.size() &&
-             level_of_both(levels_of(other.training, other.validation, best)) * (1.0 + kTie) <
-                 level_of_both(judged.level);
-    };
-    for (const Candidate* more : all)
-      if (tells_against(*more))
+  });
+  for_each_in_parallel(all.size(), [&](std::size_t k) {
+    JudgedCandidate& judged = diagnosis.candidates[k];
+    for (std::size_t other = 0; other < all.size(); ++other)
+      if (all[other]->kinds.size() <= judged.kinds.size() + 1 && is_better(diagnosis.candidates[other], judged, kTie))
         judged.suffices =
-            std::min(judged.suffices, probability_of_luck(all[k]->validation, more->validation, all.size(),
+            std::min(judged.suffices, probability_of_luck(all[k]->validation, all[other]->validation, all.size(),
                                                           windows_in(kLuckBlock_s, diagnosis.validation)));
   });
   std::ranges::stable_sort(diagnosis.candidates, {},

@@ -204,6 +204,20 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
   candidates = std::move(best);
 }
 
+/// Exchanges effects of the best candidate. If that is unphysical, as a voltage limit that stands for one of the
+/// current, those of the best physical one as well.
+void add_exchanged(std::vector<Candidate>& candidates, const std::vector<Candidate>& singles,
+                   const PreparedSets& sets) {
+  const auto physical = std::ranges::find_if(candidates, [&](const Candidate& one) { return is_physical(one, sets); });
+  std::vector<Candidate> exchanged;
+  for (auto whole = candidates.begin(); whole != candidates.end(); ++whole)
+    if (whole == candidates.begin() || whole == physical)
+      std::ranges::move(with_one_exchanged(*whole, singles, sets), std::back_inserter(exchanged));
+  compare_with_springs(exchanged, sets);
+  std::ranges::move(exchanged, std::back_inserter(candidates));
+  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
+}
+
 }  // namespace
 
 Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEffort effort) {
@@ -235,15 +249,11 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto single = std::ranges::find_if(found.singles, physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = search(single->model, single->kinds, 0.5, 0.8);
+  add_exchanged(found.pairs, found.singles, sets);
   const auto pair = std::ranges::find_if(found.pairs, physical);
   if (pair == found.pairs.end()) return found;
   renew(pair->model);
-  Candidate best_pair = *pair;
-  std::vector<Candidate> exchanged = with_one_exchanged(best_pair, found.singles, sets);
-  compare_with_springs(exchanged, sets);
-  for (const Candidate& other : exchanged)
-    if (physical(other) && other.surprise() < best_pair.surprise()) best_pair = other;
-  std::ranges::move(exchanged, std::back_inserter(found.pairs));
+  const Candidate best_pair = *pair;
   if (std::vector<Candidate> shorter = without_what_is_needless(best_pair, sets); !shorter.empty()) {
     for (Candidate& better : shorter) {
       std::erase_if(found.singles, [&](const Candidate& stuck) { return stuck.kinds == better.kinds; });
@@ -257,11 +267,10 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   }
   if (!promises_a_third(Errors(sets.base, sets), Errors(best_pair.model, sets))) return found;
   found.triples = search(best_pair.model, best_pair.kinds, 0.8, 1.0);
+  add_exchanged(found.triples, found.singles, sets);
   const auto triple = std::ranges::find_if(found.triples, physical);
   if (triple == found.triples.end()) return found;
-  std::vector<Candidate> beside = without_what_is_needless(*triple, sets);
-  std::ranges::move(with_one_exchanged(*triple, found.singles, sets), std::back_inserter(beside));
-  std::ranges::move(beside, std::back_inserter(found.triples));
+  std::ranges::move(without_what_is_needless(*triple, sets), std::back_inserter(found.triples));
   return found;
 }
 

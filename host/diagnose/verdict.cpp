@@ -208,10 +208,10 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   if (single != nullptr) single = simplest_near(single, diagnosis);
   const JudgedCandidate* triple = best_of_size(diagnosis, 3);
   const auto gains = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return level_of_both(more.level) < (1.0 - kLeastFurtherGain) * level_of_both(less.level);
+    return is_better(more, less, kLeastFurtherGain);
   };
   const auto explains_enough = [](const JudgedCandidate& more, const JudgedCandidate& less) {
-    return explained_share(level_of_both(less.level), level_of_both(more.level)) >= kLeastFurtherShare;
+    return explained_beyond(less, more) >= kLeastFurtherShare;
   };
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
                            gains(*pair, *single) &&
