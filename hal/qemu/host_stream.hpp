@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <string_view>
 
 #include "hal/qemu/semihosting.hpp"
@@ -30,15 +31,19 @@ class HostStream {
     leaving_count_ = 0;
   }
 
-  /// For an interrupt: reads newly arrived bytes once all earlier ones have been received.
+  /// For an interrupt: reads newly arrived bytes once all earlier ones have been received. If there are none it changes
+  /// nothing, because it may run between the two loads of receive(), which must not find a new place with an old count.
   void fetch() {
     if (next_ != arrived_count_) return;
+    const std::size_t count = incoming_.read_some(arrived_);
+    if (count == 0) return;
     next_ = 0;
-    arrived_count_ = incoming_.read_some(arrived_);
+    arrived_count_ = count;
   }
   bool receive(std::byte& byte) {
     if (next_ == arrived_count_) return false;
     byte = arrived_[next_];
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // from then on fetch() may overwrite the byte
     next_ = next_ + 1;
     return true;
   }
