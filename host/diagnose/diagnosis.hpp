@@ -121,8 +121,8 @@ struct Diagnosis : PreparedSets {
   /// Whether candidates were compared by the same error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
 
-  /// Candidates are judged over the noise floors of the best of them, but every model is printed with the error that
-  /// compare prints, over its own noise floors, if this measure decided.
+  /// Candidates are judged with the measured noise of the sensors, but every model is printed with the error that
+  /// compare prints, if this measure decided.
   static PrintedError printed(const JudgedCandidate& candidate) {
     if (!candidate.error) return {candidate.train_after, candidate.after};
     return {candidate.error->train.combined, candidate.error->validate.combined};
