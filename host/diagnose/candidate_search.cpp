@@ -30,9 +30,6 @@ constexpr double kClose = 1.5;
 /// Two starts of one effect are both fitted further while the ratio of their errors is below this.
 constexpr double kOpenRace = 1.25;
 
-/// A spectrum gives the period of a periodic effect correctly, but smoothing reduces its amplitude, and a base that was
-/// fitted without the effect would suppress it. So its amplitude is fitted first, alone.
-constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
 /// A drive with one integrator step per sample needs at most a third of these budgets. So a resonance of 200 Hz at 1
 /// kHz (five steps per sample) still gets as many passes as most fits take. All fits of a search together take at most
 /// some 400 million steps.

@@ -20,6 +20,10 @@ struct FitOptions {
   double most_steps = HUGE_VAL;
 };
 
+/// For an effect on a base that was fitted without it, and would suppress it: its size first, alone. A spectrum, for
+/// example, gives the period of a ripple correctly, but smoothing reduces its amplitude.
+inline constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
+
 struct FitResult {
   sim::DriveDescription model;
   double robust = 0.0;  ///< SetError::robust of the training set at the solution

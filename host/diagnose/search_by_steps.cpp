@@ -138,7 +138,8 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
         kinds.push_back(kept);
       }
       const FitResult one = fit_model(alone, sets.training, kWithoutOne);
-      const FitResult two = fit_model(exchanged, sets.training, kWithoutOne);
+      // The new effect still has the value that it had alone.
+      const FitResult two = fit_model(fit_model(exchanged, sets.training, kOwnSize).model, sets.training, kWithoutOne);
       found.push_back(judged(kinds, (one.robust < two.robust ? one : two).model, sets.training, sets.validation));
     }
   }
