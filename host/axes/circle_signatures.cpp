@@ -96,37 +96,52 @@ std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
   return feeds;
 }
 
-/// A spike of lag after each reversal of the axis. `forms`: its shapes over the time since the reversal, with separate
-/// factors for each feed, and for each end if `by_end`.
-CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::function<double(double)>>& forms,
+using SpikeForm = std::function<double(double)>;
+
+/// A spike of lag after each reversal of the axis, with separate factors for each feed, and for each end if `by_end`.
+/// `forms`: its shapes over the time since the reversal, for passes whose rows last so long.
+CircleCause spike(const CircleRows& rows, char axis, const std::function<std::vector<SpikeForm>(double row_s)>& forms,
                   bool by_end) {
   std::vector<CircleRows::Signature> signatures;
-  for (const double feed : feeds_of(rows.passes()))
+  for (const double feed : feeds_of(rows.passes())) {
+    const auto is_of_feed = [=](const CirclePass& pass) { return std::abs(pass.feed_mm_s - feed) <= 0.05 * feed; };
+    double row_s = 0.0;
+    for (std::size_t i = 0; i < rows.passes().size(); ++i)
+      if (is_of_feed(rows.passes()[i])) row_s = std::max(row_s, rows.row_s(i));
     for (const int end : by_end ? std::vector<int>{1, -1} : std::vector<int>{0})
-      for (const auto& form : forms)
+      for (const SpikeForm& form : forms(row_s))
         signatures.emplace_back([=](const CirclePass& pass, std::size_t k) {
           const double since = since_positive_end(pass, k, axis);
-          if (std::abs(pass.feed_mm_s - feed) > 0.05 * feed || (end != 0 && (since < kPi) != (end > 0))) return 0.0;
+          if (!is_of_feed(pass) || (end != 0 && (since < kPi) != (end > 0))) return 0.0;
           return form(std::fmod(since, kPi) / pass.turn_rad_s()) * std::abs(radial_part(pass, k, axis));
         });
+  }
   return cause(rows, "reversal_spike", {axis}, signatures, false, -std::log(kSpikeForms));
 }
 
-/// Adds spikes with two shapes: a rise with exponential decay, and straight lines between times at least one row apart.
+/// Straight lines between times at least one row apart: the rows of a slow pass do not show what lies between them.
+std::vector<SpikeForm> hats_over(double row_s) {
+  std::vector<SpikeForm> hats;
+  double before = 0.0, at = std::max(kFirstKnot_s, row_s);
+  for (int knot = 0; knot < kSpikeKnots; ++knot) {
+    const double after = kKnotRatio * at;
+    hats.emplace_back(
+        [=](double t) { return std::max(0.0, std::min((t - before) / (at - before), (after - t) / (after - at))); });
+    before = at;
+    at = after;
+  }
+  return hats;
+}
+
+/// Adds spikes with two shapes: a rise with exponential decay, and straight lines.
 void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& list) {
   for (const bool by_end : {false, true}) {
-    for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035})
-      list.push_back(spike(rows, axis, {[=](double t) { return t / decay_s * std::exp(1.0 - t / decay_s); }}, by_end));
-    std::vector<std::function<double(double)>> hats;
-    double before = 0.0, at = std::max(kFirstKnot_s, rows.row_s());
-    for (int knot = 0; knot < kSpikeKnots; ++knot) {
-      const double after = kKnotRatio * at;
-      hats.emplace_back(
-          [=](double t) { return std::max(0.0, std::min((t - before) / (at - before), (after - t) / (after - at))); });
-      before = at;
-      at = after;
+    for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035}) {
+      const SpikeForm rise = [=](double t) { return t / decay_s * std::exp(1.0 - t / decay_s); };
+      list.push_back(spike(
+          rows, axis, [=](double) { return std::vector{rise}; }, by_end));
     }
-    list.push_back(spike(rows, axis, hats, by_end));
+    list.push_back(spike(rows, axis, hats_over, by_end));
   }
 }
 

@@ -11,11 +11,14 @@
 #include <numeric>
 #include <optional>
 
+#include "host/axes/path_force.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/typed_keys.hpp"
 #include "host/device/motion.hpp"
 #include "host/device/path_override.hpp"
 #include "host/exit_codes.hpp"
+#include "host/model/model_file.hpp"
+#include "host/parameters/axis_parameters.hpp"
 #include "host/path/path_extents.hpp"
 #include "host/record/read_record.hpp"
 #include "host/stop_notice.hpp"
@@ -149,7 +152,7 @@ class Parts {
         relative_(relative),
         arguments_(arguments),
         at_machine_(board, machine.scale, relative, arguments),
-        recorder_(board, machine) {}
+        recorder_(board, machine, arguments.capture.empty() ? 0 : arguments.models.size()) {}
 
   ProgramOutcome run(const std::string& text) {
     const host::PathPoint start = here();
@@ -221,8 +224,20 @@ class Parts {
     for (const double one : all_um) outcome_.worst_um = std::max(outcome_.worst_um, one);
     outcome_.rows = all_um.size();
     outcome_.squares_um2 = std::inner_product(all_um.begin(), all_um.end(), all_um.begin(), 0.0);
-    if (!arguments_.capture.empty() && !followed_.empty())
-      host::write_record(host::path_record(capture, machine_, all_um), arguments_.capture);
+    if (arguments_.capture.empty() || followed_.empty()) return;
+    host::Record record = host::path_record(capture, machine_, all_um);
+    host::add_path_forces(record, capture, machine_, force_models());
+    host::write_record(record, arguments_.capture);
+  }
+
+  std::vector<host::PathForceModel> force_models() const {
+    std::vector<host::PathForceModel> models;
+    if (arguments_.models.empty()) return models;
+    const firmware::ParameterValues values = board_.read_values();
+    for (std::size_t i = 0; i < arguments_.models.size(); ++i)
+      models.push_back(
+          {host::read_model(arguments_.models[i]), host::estimator_of(values.axis(machine_.scale.axes[i]))});
+    return models;
   }
 
   /// Whether the probe is already in the state that the move seeks. G38.3 and G38.5 then end at once; G38.2 and G38.4

@@ -76,6 +76,11 @@ std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& 
   if (arguments.models.size() > axes)
     throw Failure(ExitCode::usage, fmt::format("--model: {} models for {} axes; give them in the order of the axes",
                                                arguments.models.size(), axes));
+  if (!arguments.capture.empty() && arguments.models.size() > host::most_path_forces(axes))
+    throw Failure(ExitCode::usage,
+                  fmt::format("a record of {} axes has room for {} process forces: give --capture with "
+                              "fewer models",
+                              axes, host::most_path_forces(axes)));
   std::vector<std::optional<sim::DriveDescription>> drives;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     if (axis >= arguments.models.size()) {
@@ -254,7 +259,9 @@ void add_run(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a G-code program on the board's axes");
   add_input(*command, "FILE", arguments->file, "program (RS274/NGC)")->required();
-  add_output(*command, "--capture", arguments->capture, "record to write (axis-record/1), with the contour error");
+  add_output(*command, "--capture", arguments->capture,
+             "record to write (axis-record/1), with the contour error, and with --model the "
+             "process forces");
   command->add_option("--feed", arguments->feed_percent, "override of the feeds F, %; limits of the axes hold")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 120.0));
@@ -267,7 +274,8 @@ void add_run(CLI::App& app) {
   add_input(*command, "--params", arguments->params, "with --dry-run: take limits from these files, without a board");
   add_input(*command, "--model", arguments->models,
             "models of the axes in their order (axis-model/1): they add weight and the amplifier's limits, which the "
-            "board's parameters lack");
+            "board's parameters lack; --capture then also records the process force of each on the table, "
+            "process_force_N (y_process_force_N), as capture --model does, in rows at 500 Hz at most");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(

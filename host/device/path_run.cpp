@@ -22,10 +22,13 @@ using firmware::PathStatePayload;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kRound{10};       // a tenth of the board's heartbeat time-out while it moves
-constexpr int kReportsARound = 4;        // reports of rows, which arrive continuously; each takes at most 2 ms
-constexpr double kHeadStart_s = 0.5;     // duration of the nodes sent before the board starts
-constexpr double kMostRows_Hz = 1000.0;  // USB carries this many rows of two axes besides the nodes
+constexpr milliseconds kRound{10};    // a tenth of the board's heartbeat time-out while it moves
+constexpr int kReportsARound = 4;     // reports of rows, which arrive continuously; each takes at most 2 ms
+constexpr double kHeadStart_s = 0.5;  // duration of the nodes sent before the board starts
+// USB carries this many reports of rows a second besides the nodes.
+constexpr double kMostReports_Hz = 500.0;
+constexpr std::size_t kMostRowsAReport = 2;
+constexpr std::size_t kAxisWords = 2, kForceWords = 3;
 
 firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative,
                                        firmware::ProbeStop probe = firmware::ProbeStop::none) {
@@ -162,7 +165,11 @@ void follow_to_rest(BoardClient& board, const PathScale& scale, PathRecorder& re
 
 }  // namespace
 
-PathRecorder::PathRecorder(BoardClient& board, const PathBoard& machine) : board_(board) {
+std::size_t most_path_forces(std::size_t axes) {
+  return (firmware::kWordsPerReport - 1 - kAxisWords * axes) / kForceWords;
+}
+
+PathRecorder::PathRecorder(BoardClient& board, const PathBoard& machine, std::size_t forces) : board_(board) {
   const PathScale& scale = machine.scale;
   const bool fixed_point = board.identify().fixed_point != 0;
   const BoardState status = board.status();
@@ -170,6 +177,7 @@ PathRecorder::PathRecorder(BoardClient& board, const PathBoard& machine) : board
   unit_mm_ = scale.unit_mm;
   capture_.mm.resize(scale.axes.size());
   capture_.reference_mm.resize(scale.axes.size());
+  capture_.force.resize(forces);
   for (std::size_t i = 0; i < scale.axes.size(); ++i) order_.push_back(i);
   std::ranges::sort(order_, {}, [&](std::size_t i) { return scale.axes[i]; });
   for (std::size_t i = 0; i < scale.axes.size(); ++i) {
@@ -177,10 +185,14 @@ PathRecorder::PathRecorder(BoardClient& board, const PathBoard& machine) : board
     scales_.emplace_back(values.axis(axis), fixed_point, status.axis.at(axis).counts());
     request_.channels[axis] =
         1u << static_cast<unsigned>(Channel::counts) | 1u << static_cast<unsigned>(Channel::reference);
+    if (i >= forces) continue;
+    for (const Channel channel : {Channel::reference_velocity, Channel::disturbance, Channel::friction})
+      request_.channels[axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
   }
   first_ = order_.front();
   request_.channels[scale.axes[first_]] |= 1u << static_cast<unsigned>(Channel::dac_code);
-  request_.every = static_cast<std::uint16_t>(std::max(1.0, std::ceil(scale.rate_Hz / kMostRows_Hz)));
+  const double rows_Hz = kMostReports_Hz * (forces == 0 ? kMostRowsAReport : 1);
+  request_.every = static_cast<std::uint16_t>(std::max(1.0, std::ceil(scale.rate_Hz / rows_Hz)));
   capture_.row_period_s = request_.every / scale.rate_Hz;
 }
 
@@ -208,6 +220,10 @@ bool PathRecorder::fetch(milliseconds patience) {
       if (i == first_) capture_.u_V.push_back(scales_[i](Channel::dac_code, *word++));
       capture_.mm[i].push_back(unit_mm_[i] * scales_[i](Channel::counts, *word++));
       capture_.reference_mm[i].push_back(unit_mm_[i] * scales_[i](Channel::reference, *word++));
+      if (i >= capture_.force.size()) continue;
+      capture_.force[i].w_ref.push_back(scales_[i](Channel::reference_velocity, *word++));
+      capture_.force[i].d_hat_V.push_back(scales_[i](Channel::disturbance, *word++));
+      capture_.force[i].u_friction_V.push_back(scales_[i](Channel::friction, *word++));
     }
   }
   return true;

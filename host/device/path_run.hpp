@@ -39,20 +39,32 @@ struct PathProgress {
   const PathStop* waits = nullptr;  ///< stop at which the program waits, at rest, for the operator; else null
 };
 
+/// What the process force of an axis is computed from, row by row.
+struct PathForceRows {
+  std::vector<double> w_ref;  ///< rad/s (m/s)
+  std::vector<double> d_hat_V, u_friction_V;
+};
+
 /// Encoders and references, row by row.
 struct PathCapture {
   double row_period_s = 0.0;
   std::vector<std::uint32_t> number;                  ///< of each row; a jump means lost rows
   std::vector<double> u_V;                            ///< of the first axis
   std::vector<std::vector<double>> mm, reference_mm;  ///< of each axis
+  std::vector<PathForceRows> force;                   ///< of the first axes, as many as were asked for
   std::size_t lost = 0;
   std::uint32_t dropped_by_board = 0;
 };
 
+/// Number of process forces for which a row of this many axes has room.
+std::size_t most_path_forces(std::size_t axes);
+
 /// Records the axes from the first path that uses it, through all further paths and the rests between them.
 class PathRecorder {
  public:
-  PathRecorder(BoardClient& board, const PathBoard& machine);
+  /// `forces`: number of the first axes whose process force is recorded too, at most most_path_forces(); the rows then
+  /// come at most 500 times a second instead of 1000.
+  PathRecorder(BoardClient& board, const PathBoard& machine, std::size_t forces = 0);
   PathRecorder(const PathRecorder&) = delete;
   PathRecorder& operator=(const PathRecorder&) = delete;
   ~PathRecorder();  ///< ends the board's capture

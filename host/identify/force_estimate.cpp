@@ -76,9 +76,18 @@ void add_process_force(Record& record, const sim::DriveDescription& model,
   const ForceEstimate stated = force_estimate(design, model.data);
   const std::vector<double> known_V = known_disturbance_V(record, model);
   ExtraChannel force{kProcessForce, std::vector<double>(record.size()), {}};
-  // The estimate in row k is that of the previous period, whose feed-forward used the reference of row k.
+  const double periods_a_row = std::max(1.0, std::round(record.sample_period_s / model.data.sample_period_s));
+  // The estimate in row k is that of the previous period, whose feed-forward used the reference of row k. Where the
+  // rows leave out that period, the reference is interpolated; its feed-forward jumps where it reverses.
+  const auto covered_before_V = [&](std::size_t k) {
+    if (k == 0) return covered_V[0];
+    const double speed = record.w_ref[k] + (record.w_ref[k - 1] - record.w_ref[k]) / periods_a_row;
+    if ((record.w_ref[k] > 0.0) == (record.w_ref[k - 1] > 0.0))
+      return covered_V[k] + (covered_V[k - 1] - covered_V[k]) / periods_a_row;
+    return (speed > 0.0) == (record.w_ref[k] > 0.0) ? covered_V[k] : covered_V[k - 1];
+  };
   for (std::size_t k = 0; k < record.size(); ++k)
-    force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_V[k == 0 ? 0 : k - 1] - known_V[k]);
+    force.values[k] = stated.newton_per_V * (estimate_V[k] + covered_before_V(k) - known_V[k]);
   record.extra.push_back(std::move(force));
   record.header[kProcessForceBand] = fmt::format("{:.4g}", stated.band_N);
   record.header[kProcessForceDelay] = fmt::format("{:.4g}", stated.delay_s);

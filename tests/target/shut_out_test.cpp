@@ -35,6 +35,15 @@ TEST_P(ShutOut, IsShortWhileASetIsTakenOver) {
   EXPECT_GT(costs["commit_at_standstill_shut_out"].worst, 0);
 }
 
+/// The watches of process force and friction feed-forward for both axes, once a control period in the background.
+TEST_P(ShutOut, TheBackgroundsWatchesTakeLittle) {
+  const std::string why = target_test::obstacle(GetParam());
+  if (!why.empty()) GTEST_SKIP() << why;
+  auto costs = target_test::count_instructions(GetParam());
+  EXPECT_GT(costs["watches"].mean, 100) << "nothing was watched";
+  EXPECT_LE(costs["watches"].worst, kShortestPeriod / 10);
+}
+
 /// Catches a velocity whose unit is taken from parameters computed for that alone: 1324 instructions in fixed point.
 TEST_P(ShutOut, TheStateOfAnAxisIsToldWithoutComputingItsParameters) {
   const std::string why = target_test::obstacle(GetParam());

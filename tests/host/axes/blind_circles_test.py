@@ -162,17 +162,31 @@ def write(path: Path, motor: dict[str, list[float]], table: tuple[list[float], l
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
+def turning_rows() -> list[int]:
+    """Steps at steady feed, from 0.15 s after the feed is reached: by then the transients of the start, which are no
+    error of the circle, have faded (loop of 30 Hz, friction feed-forward late by at most 25 ms)."""
+    rows: list[int] = []
+    steady = 0
+    for k in range(1, len(PATH)):
+        feed = abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS
+        steady = steady + 1 if any(abs(feed / one - 1.0) < 0.01 for one in FEEDS) else 0
+        if steady > 0.15 / STEP:
+            rows.append(k)
+    return rows
+
+
+TURNING = turning_rows()
+
+
 def true_sizes(causes: dict[str, float], draw: dict[str, float], has_bar: bool, motor: dict[str, list[float]]) -> dict[str, float]:
-    """The change of the radial deviation when one cause is removed: its range at steady feed."""
-    turning = [k for k in range(1, len(PATH)) if abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[0] - 1.0) < 0.01
-               or abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[1] - 1.0) < 0.01]
+    """The change of the radial deviation when one cause is removed: its range while the machine turns at steady feed."""
     whole = radial(*table_of(motor, causes, draw)) if has_bar else radial(motor["x"], motor["y"])
     sizes = {}
     for name in causes:
         rest = {other: size for other, size in causes.items() if other != name}
         other = motor if name in TABLE else {axis: Axis(rest, axis, draw).run() for axis in "xy"}
         less = radial(*table_of(other, rest, draw)) if has_bar else radial(other["x"], other["y"])
-        off = [whole[k] - less[k] for k in turning]
+        off = [whole[k] - less[k] for k in TURNING]
         sizes[name] = max(off) - min(off)
     return sizes
 

@@ -99,6 +99,28 @@ TEST_F(RunCommand, ADryRunSaysTheLargestCommandAndWhere) {
   }
 }
 
+/// Catches a force of another axis, one that holds the axis's friction, and one without its band. No force acts, and
+/// the model is exact, so that the estimate is its noise.
+TEST_F(RunCommand, CapturesTheProcessForceOfEachAxisWithAModel) {
+  fit();
+  const std::string line = written("line.ngc", "F3000\nG1 X60 Y-45\nM2\n");
+  ASSERT_EQ(run("run " + line + " --yes --capture " + file("c.csv") + " --model " + kModel + " " + kModel).exit_code,
+            0);
+  const host::Record record = host::read_record(file("c.csv"));
+  for (const std::string prefix : {"", "y_"}) {
+    const auto force = std::ranges::find(record.extra, prefix + "process_force_N", &host::ExtraChannel::name);
+    ASSERT_NE(force, record.extra.end()) << prefix;
+    const double band_N = std::stod(record.header.at(prefix + "process_force_band_N"));
+    const std::size_t begin = record.size() / 4, end = 3 * record.size() / 4;
+    double squares = 0.0;
+    for (std::size_t k = begin; k < end; ++k) squares += force->values[k] * force->values[k];
+    const double rms_N = std::sqrt(squares / static_cast<double>(end - begin));
+    std::printf("%sprocess force without a process: %.1f N RMS, band +-%.1f N\n", prefix.c_str(), rms_N, band_N);
+    EXPECT_GT(rms_N, 0.0);
+    EXPECT_LT(1.96 * rms_N, 1.25 * band_N);
+  }
+}
+
 TEST_F(RunCommand, AProgramThatTheDriveCannotFollowIsNamed) {
   fit();
   const std::string line = written("line.ngc", "F1200 G1 X5\nF12000 G1 X60\nM2\n");

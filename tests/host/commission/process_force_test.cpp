@@ -184,12 +184,14 @@ TEST_F(ProcessForce, IsTheSameColumnWithoutFrictionFeedforward) {
 TEST_F(ProcessForce, HoldsTheFeedAboveItsLimitUntilReleased) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kLimit_N = 500.0, kGrowth_N_s = 2000.0, kFeed_mm_s = 20.0, kLength_mm = 60.0;
-  use(1e-2, {{host::require_place("x.feedback.hold_effort"), static_cast<float>(kLimit_N * kLead_m)}});
-  double begins_s = 0.0, held_at_N = 0.0;
+  const host::ForceEstimate stated =
+      use(1e-4, {{host::require_place("x.feedback.hold_effort"), static_cast<float>(kLimit_N * kLead_m)}});
+  double begins_s = 0.0, free_at_N = 0.0, held_at_N = 0.0;  // force at the last poll before the hold, and at the next
   double now_s = 0.0;
+  const auto force_now_N = [&] { return begins_s > 0.0 ? kGrowth_N_s * (now_s - begins_s) : 0.0; };
   board_.machine->process_N = [&](double t_s) {
     now_s = t_s;
-    return begins_s > 0.0 ? kGrowth_N_s * std::max(0.0, t_s - begins_s) : 0.0;
+    return force_now_N();
   };
   host::enable_and_wait(client_, 1);
   const host::PathBoard machine = host::path_board(client_.read_values(), 1);
@@ -210,22 +212,28 @@ TEST_F(ProcessForce, HoldsTheFeedAboveItsLimitUntilReleased) {
         wish.stop = ++polls > 2000;
         if (progress.elapsed_s > 1.0 && begins_s == 0.0) begins_s = now_s;
         if (progress.state.held == firmware::kHeldForProcess) {
-          if (++polls_held == 1) held_at_N = kGrowth_N_s * (now_s - begins_s);
+          if (++polls_held == 1) held_at_N = force_now_N();
           if (polls_held == 40) elapsed_at_rest_s = progress.elapsed_s;
           if (polls_held == 60) board_.machine->process_N = nullptr;
           if (polls_held >= 60) return wish;
         }
+        if (polls_held == 0) free_at_N = force_now_N();
         wish.held = polls_held > 0 && polls_held < 60;
         return wish;
       });
   recorder.stop();
   host::disable_and_wait(client_, 1);
-  std::printf("limit %.0f N, force %.0f N when the hold was seen, %.3f s of %.3f s of the path at rest\n", kLimit_N,
-              held_at_N, elapsed_at_rest_s, path.duration_s());
+  // Once the force exceeds the limit by the band of the estimate, which lags behind by its delay, 97.5 % of the
+  // estimates are above the limit and 2.5 % below. The feed is held after 1/33 s more above than below.
+  constexpr double kExcess_s = 1.0 / 33.0 / 0.95;
+  const double latest_N = kLimit_N + stated.band_N + kGrowth_N_s * (stated.delay_s + kExcess_s);
+  const double earliest_N = kLimit_N - stated.band_N + kGrowth_N_s * stated.delay_s;
+  std::printf(
+      "limit %.0f N: feed held between %.0f N and %.0f N (may be %.0f to %.0f N), at rest after %.3f s of %.3f s\n",
+      kLimit_N, free_at_N, held_at_N, earliest_N, latest_N, elapsed_at_rest_s, path.duration_s());
   EXPECT_EQ(polls_held, 60);
-  // The estimate's deviation is 133 N; at 2 N/ms, 30 ms of excess and up to 30 ms until the hold is seen add 120 N.
-  EXPECT_GT(held_at_N, kLimit_N - 133.0);
-  EXPECT_LT(held_at_N, kLimit_N + 133.0 + 120.0);
+  EXPECT_GT(held_at_N, earliest_N);
+  EXPECT_LT(free_at_N, latest_N);
   EXPECT_LT(elapsed_at_rest_s, 0.7 * path.duration_s());
   EXPECT_EQ(static_cast<firmware::PathEnd>(done.state.end), firmware::PathEnd::completed);
   EXPECT_EQ(done.state.held, 0);

@@ -49,6 +49,14 @@ void print_laws() {
   }
 }
 
+void print_background() {
+  auto costs = count_instructions("shut-out-m4");
+  fmt::print(
+      "\nThe background's watches of process force and friction feed-forward, both axes, a control period: {}, {} at "
+      "worst\n",
+      costs["watches"].mean, costs["watches"].worst);
+}
+
 void print_other_ways() {
   fmt::print("\nEstimator and feedback written in other ways, float, Cortex-M4F\n");
   auto costs = count_instructions("cost-matrix-m4");
@@ -67,6 +75,7 @@ int main() {
   }
   try {
     print_laws();
+    print_background();
     print_other_ways();
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

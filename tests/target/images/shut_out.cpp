@@ -1,8 +1,12 @@
-// Image that measures how long the background's requests block the control interrupt while both axes move.
+// Image that measures how long the background's requests block the control interrupt while both axes move, and what its
+// watches take.
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "firmware/app/board_application.hpp"
+#include "firmware/app/friction_watch.hpp"
+#include "firmware/app/process_limit.hpp"
 #include "firmware/boards/emulated/memory_flash.hpp"
 #include "firmware/boards/image/board_scalar.hpp"
 #include "firmware/boards/image/capture_memory.hpp"
@@ -93,7 +97,8 @@ class CountedBoard {
 static_assert(hal::Board<CountedBoard>);
 
 CountedBoard board;
-firmware::BoardApplication<firmware::boards::BoardScalar, CountedBoard> application(board);
+using Application = firmware::BoardApplication<firmware::boards::BoardScalar, CountedBoard>;
+Application application(board);
 std::array drives{RigidDrive{firmware_test::kPaperX}, RigidDrive{firmware_test::kPaperY}};
 
 void run(int periods) {
@@ -141,6 +146,39 @@ void load_tables() {
   }
 }
 
+/// The application as the watch of the process force sees it while both axes follow a path.
+struct OnAPath {
+  using Number = Application::Number;
+  using BoardType = CountedBoard;
+  static constexpr std::size_t kAxes = Application::kAxes;
+  struct Path {
+    bool is_moving() const { return true; }
+    bool leads(std::size_t) const { return true; }
+    void hold_for_process() const { hal::qemu::exit_emulator(10); }
+  };
+
+  const auto& active() const { return application.active(); }
+  auto& axes() const { return application.axes(); }
+  Path path() const { return {}; }
+};
+
+/// Both watches of the background, for both axes, once a control period.
+void count_watches() {
+  firmware::FrictionWatch<Application> friction;
+  firmware::ProcessLimit<OnAPath> force;
+  OnAPath on_a_path;
+  Cost cost;
+  for (int period = 0; period < 500; ++period) {
+    run(1);
+    cost.add(count([&] {
+      force.poll(on_a_path);
+      friction.poll(application);
+    }));
+    application.owner_heard(firmware::ClientToken{1});
+  }
+  report("watches", cost);
+}
+
 }  // namespace
 
 extern "C" [[noreturn]] void run_board() {
@@ -180,6 +218,14 @@ extern "C" [[noreturn]] void run_board() {
     }
     commit_all();
   }
+  application.staged() = application.active();
+  for (const char* axis : {"x", "y"})
+    for (const auto& [name, value] :
+         {std::pair{"feedforward.friction", 1.0F}, std::pair{"feedforward.friction_watch", 1.0F},
+          std::pair{"feedback.hold_effort", 1e3F}})
+      application.staged().set(firmware_test::find_place(axis, name).value_or(0), value);
+  expect(application.commit(refused) == Status::ok, 11);
+  run(200);
   std::size_t refused_axis = 0;
   expect(application.enable(3, refused_axis) == Status::ok, 2);
   application.become_owner(firmware::ClientToken{1});
@@ -187,6 +233,7 @@ extern "C" [[noreturn]] void run_board() {
   for (std::size_t axis = 0; axis < drives.size(); ++axis) expect(application.jog(axis, 20.0F) == Status::ok, 3);
   run(200);
 
+  count_watches();
   report_shut_out("parameter_change", [&](int trial) {
     application.staged() = application.active();
     application.staged().set(standing, trial % 2 == 0 ? 50.0F : 60.0F);
