@@ -180,9 +180,9 @@ TEST_F(ExportModel, HalLinesNameThePinsAsHalcompileDoes) {
 
 TEST_F(ExportModel, SaysUnderWhatNameHalcompileTakesAComponent) {
   for (const char* name : {"x-friction.comp", "x_friction.txt"})
-    EXPECT_THAT(to(host::ExportTarget::linuxcnc, name).files[0].text, HasSubstr("name this one x_friction.comp"))
+    EXPECT_THAT(to(host::ExportTarget::linuxcnc, name).files[0].text, HasSubstr("rename this file to x_friction.comp"))
         << name;
-  EXPECT_THAT(to(host::ExportTarget::linuxcnc, "x_friction.comp").files[0].text, Not(HasSubstr("name this one")));
+  EXPECT_THAT(to(host::ExportTarget::linuxcnc, "x_friction.comp").files[0].text, Not(HasSubstr("rename this file")));
 }
 
 TEST_F(ExportModel, WhatIsLeftOutIsNamed) {
