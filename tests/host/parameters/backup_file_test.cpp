@@ -51,10 +51,10 @@ TEST(Backup, KeepsTablesOfPitchErrors) {
     return std::string("taken");
   };
   EXPECT_THAT(refusal("60000", "-200"), HasSubstr("b.toml:")) << "in falling order";
-  EXPECT_THAT(refusal("65536", "2000000000"), HasSubstr("no point")) << "more than a board takes";
+  EXPECT_THAT(refusal("65536", "2000000000"), HasSubstr("not a valid point")) << "more than a board takes";
   for (const char* odd : {"sixty", "60000.5", "99999999999999999999", "inf", "60000 7", ""})
-    EXPECT_THAT(refusal("60000", odd), HasSubstr("no point")) << odd;
-  EXPECT_THAT(refusal("60000", "60000", 1), HasSubstr("no point")) << "a board with fewer axes";
+    EXPECT_THAT(refusal("60000", odd), HasSubstr("not a valid point")) << odd;
+  EXPECT_THAT(refusal("60000", "60000", 1), HasSubstr("not a valid point")) << "a board with fewer axes";
 }
 
 TEST(Backup, CutAnywhereIsRefused) {
@@ -70,7 +70,7 @@ TEST(Backup, AChangedValueIsRefusedAndToldWhatTakesIt) {
 }
 
 TEST(Backup, AFileOfPartsIsNoBackup) {
-  EXPECT_THAT(message_of("format = \"axis-params/1\"\n[x.feedback]\nk1 = 48.4\n"), HasSubstr("names 1 of"));
+  EXPECT_THAT(message_of("format = \"axis-params/1\"\n[x.feedback]\nk1 = 48.4\n"), HasSubstr("only 1 of the"));
 }
 
 TEST(Backup, EndsOfLinesMayBeAnotherSystems) {
