@@ -62,7 +62,7 @@ void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>&
                                                           windows_in(kLuckBlock_s, diagnosis.validation)));
   });
   std::ranges::stable_sort(diagnosis.candidates, {},
-                           [](const JudgedCandidate& judged) { return level_of_both(judged.level); });
+                           [](const JudgedCandidate& judged) { return Diagnosis::printed(judged).validate; });
 }
 
 }  // namespace
