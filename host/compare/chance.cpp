@@ -12,13 +12,12 @@ namespace {
 constexpr int kDraws = 2000;
 
 /// Gain of `after` over `before` for each block of consecutive windows.
-std::vector<double> gains_of(const SetError& before, const SetError& after, std::size_t block) {
-  const std::size_t count = std::min(before.windows.size(), after.windows.size());
+std::vector<double> gains_of(const std::vector<double>& before, const std::vector<double>& after, std::size_t block) {
+  const std::size_t count = std::min(before.size(), after.size());
   std::vector<double> gains;
   for (std::size_t begin = 0; begin < count; begin += block) {
     double gain = 0.0;
-    for (std::size_t k = begin; k < std::min(count, begin + block); ++k)
-      gain += before.windows[k].surprise - after.windows[k].surprise;
+    for (std::size_t k = begin; k < std::min(count, begin + block); ++k) gain += before[k] - after[k];
     gains.push_back(gain);
   }
   return gains;
@@ -26,7 +25,8 @@ std::vector<double> gains_of(const SetError& before, const SetError& after, std:
 
 }  // namespace
 
-double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block) {
+double confidence_of_improvement(const std::vector<double>& before, const std::vector<double>& after,
+                                 std::size_t block) {
   const std::vector<double> gains = gains_of(before, after, block);
   if (gains.empty()) return 0.0;
   std::mt19937 random(1);  // a fixed seed: the same records give the same answer
@@ -40,7 +40,8 @@ double confidence_of_improvement(const SetError& before, const SetError& after, 
   return static_cast<double>(better) / kDraws;
 }
 
-double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, std::size_t block) {
+double probability_of_luck(const std::vector<double>& before, const std::vector<double>& after, std::size_t tried,
+                           std::size_t block) {
   constexpr int kSigns = 10000;
   const std::vector<double> gains = gains_of(before, after, block);
   double observed = 0.0;

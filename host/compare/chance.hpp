@@ -1,14 +1,18 @@
 // Significance of an improvement.
 #pragma once
 
-#include "host/compare/comparison.hpp"
+#include <cstddef>
+#include <vector>
+
+#include "host/evidence/prepared_record.hpp"
 
 namespace host {
 
 /// Probability that `after` is better than `before` on records of the same kind: the share of resampled sets in which
-/// the surprise decreases. Bootstrap over blocks of `block` consecutive windows, because neighbouring windows belong to
-/// the same motion. Both errors must come from the same windows.
-double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block = 10);
+/// the loss decreases. `before`, `after`: losses of the same windows, which add up. Bootstrap over blocks of `block`
+/// consecutive windows, because neighbouring windows belong to the same motion.
+double confidence_of_improvement(const std::vector<double>& before, const std::vector<double>& after,
+                                 std::size_t block = 10);
 
 /// Length of independent blocks, s. Each prediction restarts from the measurement, so errors do not carry over.
 inline constexpr double kLuckBlock_s = kWindow_s;
@@ -16,6 +20,7 @@ inline constexpr double kLuckBlock_s = kWindow_s;
 /// p-value of the best of `tried` candidates: probability of a gain as large as that of `after` by chance.
 /// Randomisation test over the signs of the blocks' gains, times the number of candidates tried (Bonferroni), at most
 /// 1.
-double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, std::size_t block);
+double probability_of_luck(const std::vector<double>& before, const std::vector<double>& after, std::size_t tried,
+                           std::size_t block);
 
 }  // namespace host

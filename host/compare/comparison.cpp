@@ -114,6 +114,35 @@ double bounded(double square, double floor) {
   return square < most ? square : most;
 }
 
+struct ChannelScore {
+  std::size_t window;  ///< index in SetError::windows
+  double square;       ///< mean squared error over squared noise floor
+  double floor;
+};
+
+/// Fills log_loss and window_log_loss.
+void add_log_loss(const std::vector<ChannelScore>& scores, SetError& error) {
+  constexpr double kDegrees = 4.0;  // of the t distribution (Lange et al. 1989)
+  constexpr int kRounds = 30;       // of the fixed point for the scale of a t distribution
+  const auto count = static_cast<double>(scores.size());
+  error.window_log_loss.assign(error.windows.size(), 0.0);
+  if (scores.empty()) return;
+  double scale = 1.0;  // squared, over the noise floors
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0;
+    for (const ChannelScore& score : scores) sum += (kDegrees + 1.0) * score.square / (kDegrees + score.square / scale);
+    scale = std::max(1.0, sum / count);
+  }
+  double sum = 0.0;
+  for (const ChannelScore& score : scores) {
+    const double loss = std::log(score.floor) + 0.5 * std::log(scale) +
+                        0.5 * (kDegrees + 1.0) * std::log1p(score.square / (kDegrees * scale));
+    error.window_log_loss[score.window] += loss;
+    sum += loss;
+  }
+  error.log_loss = std::isfinite(sum) ? sum / count : HUGE_VAL;
+}
+
 }  // namespace
 
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
@@ -132,38 +161,6 @@ void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
 double WindowScore::weighed(double common_square) const {
   return weighed_square(x, common_square) + weighed_square(w, common_square) + weighed_square(effort, common_square);
 }
-
-namespace {
-
-struct ChannelScore {
-  std::size_t window;  ///< index in SetError::windows
-  double square;       ///< mean squared error over squared noise floor
-  double floor;
-};
-
-/// Fills SetError::surprise and that of each window.
-void add_surprise(const std::vector<ChannelScore>& scores, SetError& error) {
-  constexpr double kDegrees = 4.0;  // of the t distribution (Lange et al. 1989)
-  constexpr int kRounds = 30;       // of the fixed point for the scale of a t distribution
-  const auto count = static_cast<double>(scores.size());
-  if (scores.empty()) return;
-  double scale = 1.0;  // squared, over the noise floors
-  for (int round = 0; round < kRounds; ++round) {
-    double sum = 0.0;
-    for (const ChannelScore& score : scores) sum += (kDegrees + 1.0) * score.square / (kDegrees + score.square / scale);
-    scale = std::max(1.0, sum / count);
-  }
-  double sum = 0.0;
-  for (const ChannelScore& score : scores) {
-    const double surprise = std::log(score.floor) + 0.5 * std::log(scale) +
-                            0.5 * (kDegrees + 1.0) * std::log1p(score.square / (kDegrees * scale));
-    error.windows[score.window].surprise += surprise;
-    sum += surprise;
-  }
-  error.surprise = std::isfinite(sum) ? sum / count : HUGE_VAL;
-}
-
-}  // namespace
 
 double weighed_square(double square, double common_square) {
   return common_square * std::log1p(square / common_square);
@@ -205,7 +202,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   const std::size_t channels = x.count + w.count + effort.count;
   error.combined = root_mean(combined, channels);
   error.robust = root_mean(robust, channels);
-  add_surprise(scores, error);
+  add_log_loss(scores, error);
   error.x_rms = root_mean(x.square, x.count);
   error.w_rms = root_mean(w.square, w.count);
   error.x_floor = root_mean(x.floor, x.count);

@@ -66,8 +66,7 @@ struct WindowScore {
   std::size_t window;
   double x = 0.0;  ///< mean squared error over squared noise floor; 0 if the record lacks the channel
   double w = 0.0;
-  double effort = 0.0;    ///< the same for torque or force, if these are the measure
-  double surprise = 0.0;  ///< sum over the channels, see SetError::surprise
+  double effort = 0.0;  ///< the same for torque or force, if these are the measure
 
   /// Sum over all channels with their weights in a fit.
   double weighed(double common_square) const;
@@ -83,10 +82,12 @@ struct SetError {
   double w_floor = 0.0;
   double effort_rms = 0.0;  ///< Nm or N, if torque or force is the measure; x and w are then zero
   double effort_floor = 0.0;
-  /// Mean of -log p of the errors over all windows and channels, under a t distribution whose scale is the noise floor
-  /// times a common factor of at least 1. Compares models by their own floors: a model that is uncertain of a motion
-  /// gains by a large floor only where it errs as much. A constant in the unit of the channels is left out.
-  double surprise = 0.0;
+  /// Mean negative log-likelihood of the errors over all windows and channels, under a t distribution whose scale is
+  /// the noise floor times a common factor of at least 1. Compares models by their own floors: a model that is
+  /// uncertain of a motion gains by a large floor only where it errs as much. A constant in the unit of the channels is
+  /// left out.
+  double log_loss = 0.0;
+  std::vector<double> window_log_loss;  ///< of each window, the sum over its channels
   std::vector<WindowScore> windows;
 };
 

@@ -456,7 +456,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     if (is_close) fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));
     candidates[k] = judged(all, finalists[k].model, training, validation);
   });
-  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
+  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
   if (effort.cut_short != nullptr)
     for (const std::vector<Start>* list : {&starts, &race, &finalists})
       for (const Start& start : *list)

@@ -19,7 +19,7 @@ struct Candidate {
   SetError validation;  ///< over the model's own noise floors
 
   /// Both sets count alike: a real effect predicts both better, a chance fit only one.
-  double surprise() const { return training.surprise + validation.surprise; }
+  double log_loss() const { return training.log_loss + validation.log_loss; }
 };
 
 /// Called from any thread with the finished share of the work, 0..1.

@@ -41,6 +41,8 @@ bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
          (on(diagnosis.before_train, candidate.train_after) || on(diagnosis.before_level.train, candidate.level.train));
 }
 
+double combined_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.train_after * candidate.after); }
+
 }  // namespace
 
 double explained_share(double before, double after) {
@@ -56,12 +58,6 @@ double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis
 }
 
 double level_of_both(const SetLevels& level) { return std::sqrt(level.train * level.validate); }
-
-namespace {
-
-double combined_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.train_after * candidate.after); }
-
-}  // namespace
 
 bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double share) {
   const double level = level_of_both(one.level), least = level_of_both(other.level);

@@ -32,7 +32,7 @@ struct EffortError {
   double floor_train = 0.0, floor_validate = 0.0;
 };
 
-/// Errors from the surprise of a model (SetError): over the noise floor of the most probable model. Equal to its robust
+/// Errors from the log loss of a model (SetError): over the noise floor of the most probable model. Equal to its robust
 /// error for that model, and e times as large for one nat more per window and channel.
 struct SetLevels {
   double train = 0.0, validate = 0.0;

@@ -29,7 +29,7 @@ std::vector<const Candidate*> all_of(const Findings& findings) {
           all, [&](const Candidate* other) { return std::ranges::is_permutation(other->kinds, candidate.kinds); });
       if (same == all.end())
         all.push_back(&candidate);
-      else if (candidate.surprise() < (*same)->surprise())
+      else if (candidate.log_loss() < (*same)->log_loss())
         *same = &candidate;
     }
   return all;
@@ -38,7 +38,7 @@ std::vector<const Candidate*> all_of(const Findings& findings) {
 /// Levels over the floors of `best`.
 SetLevels levels_of(const SetError& train, const SetError& validate, const Candidate& best) {
   const auto level = [](const SetError& error, const SetError& least) {
-    return std::max(1.0, least.robust) * std::exp(error.surprise - least.surprise);
+    return std::max(1.0, least.robust) * std::exp(error.log_loss - least.log_loss);
   };
   return {level(train, best.training), level(validate, best.validation)};
 }
@@ -58,8 +58,9 @@ void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>&
     for (std::size_t other = 0; other < all.size(); ++other)
       if (all[other]->kinds.size() <= judged.kinds.size() + 1 && is_better(diagnosis.candidates[other], judged, kTie))
         judged.suffices =
-            std::min(judged.suffices, probability_of_luck(all[k]->validation, all[other]->validation, all.size(),
-                                                          windows_in(kLuckBlock_s, diagnosis.validation)));
+            std::min(judged.suffices,
+                     probability_of_luck(all[k]->validation.window_log_loss, all[other]->validation.window_log_loss,
+                                         all.size(), windows_in(kLuckBlock_s, diagnosis.validation)));
   });
   std::ranges::stable_sort(diagnosis.candidates, {},
                            [](const JudgedCandidate& judged) { return Diagnosis::printed(judged).validate; });
@@ -75,8 +76,9 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.before = before.combined;
   judged.after = candidate.validation.combined;
   judged.train_after = candidate.training.combined;
-  judged.confidence = confidence_of_improvement(before, candidate.validation, windows_in(kBlock_s, validation));
-  judged.luck = probability_of_luck(before, candidate.validation, tried, windows_in(kLuckBlock_s, validation));
+  const std::vector<double>&without = before.window_log_loss, &with = candidate.validation.window_log_loss;
+  judged.confidence = confidence_of_improvement(without, with, windows_in(kBlock_s, validation));
+  judged.luck = probability_of_luck(without, with, tried, windows_in(kLuckBlock_s, validation));
   judged.model = candidate.model;
   judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
   return judged;
@@ -88,8 +90,8 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   const Candidate base = judged({}, diagnosis.base, training, validation);
   const SetError &before = base.validation, &before_train = base.training;
   const std::vector<const Candidate*> all = all_of(findings);
-  const auto likeliest = std::ranges::min_element(all, {}, &Candidate::surprise);
-  const Candidate& best = all.empty() || base.surprise() < (*likeliest)->surprise() ? base : **likeliest;
+  const auto likeliest = std::ranges::min_element(all, {}, &Candidate::log_loss);
+  const Candidate& best = all.empty() || base.log_loss() < (*likeliest)->log_loss() ? base : **likeliest;
   renew_floors(training, best.model);
   renew_floors(validation, best.model);
   diagnosis.before_level = levels_of(before_train, before, best);
@@ -107,12 +109,11 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   diagnosis.verdict = reach_verdict(given, diagnosis);
   assign_probabilities(diagnosis);
   settle_status(diagnosis);
-  diagnosis.best = diagnosis.base;
   const std::vector<std::string> modelled = modelled_kinds(diagnosis);
-  for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (std::ranges::is_permutation(candidate.kinds, modelled)) diagnosis.best = candidate.model;
-
-  const Candidate after = judged({}, diagnosis.best, training, validation);
+  const auto named = std::ranges::find_if(
+      all, [&](const Candidate* candidate) { return std::ranges::is_permutation(candidate->kinds, modelled); });
+  const Candidate& after = named == all.end() ? base : **named;
+  diagnosis.best = after.model;
   diagnosis.after_train = after.training.combined;
   diagnosis.after_validate = after.validation.combined;
   if (!moves)

@@ -163,12 +163,12 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
     Candidate whole = fitted(model);
     second->parameters["load_friction"] = kStart;
     Candidate split = fitted(model);
-    if (whole.surprise() < candidate.surprise()) candidate = std::move(whole);
-    if (split.training.surprise < candidate.training.surprise - kBetter && split.surprise() < candidate.surprise() &&
+    if (whole.log_loss() < candidate.log_loss()) candidate = std::move(whole);
+    if (split.training.log_loss < candidate.training.log_loss - kBetter && split.log_loss() < candidate.log_loss() &&
         is_physical(split, sets))
       candidate = std::move(split);
   }
-  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
+  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
 }
 
 /// A spring is a gap of width zero, so every gap is compared with a spring that is fitted equally well. The spring
@@ -192,11 +192,11 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
     std::ranges::replace(kinds, "backlash", "compliance");
     springs.push_back(
         judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.training, sets.validation));
-    return is_unseen || springs.back().surprise() <= candidate.surprise() + kHardly;
+    return is_unseen || springs.back().log_loss() <= candidate.log_loss() + kHardly;
   });
   if (springs.empty()) return;
   std::ranges::move(springs, std::back_inserter(candidates));
-  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
+  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
   std::vector<Candidate> best;
   for (Candidate& candidate : candidates)
     if (std::ranges::none_of(
@@ -216,7 +216,7 @@ void add_exchanged(std::vector<Candidate>& candidates, const std::vector<Candida
       std::ranges::move(with_one_exchanged(*whole, singles, sets), std::back_inserter(exchanged));
   compare_with_springs(exchanged, sets);
   std::ranges::move(exchanged, std::back_inserter(candidates));
-  std::ranges::stable_sort(candidates, {}, &Candidate::surprise);
+  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
 }
 
 }  // namespace
@@ -254,20 +254,19 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto pair = std::ranges::find_if(found.pairs, physical);
   if (pair == found.pairs.end()) return found;
   renew(pair->model);
-  const Candidate best_pair = *pair;
-  if (std::vector<Candidate> shorter = without_what_is_needless(best_pair, sets); !shorter.empty()) {
+  if (std::vector<Candidate> shorter = without_what_is_needless(*pair, sets); !shorter.empty()) {
     for (Candidate& better : shorter) {
       std::erase_if(found.singles, [&](const Candidate& stuck) { return stuck.kinds == better.kinds; });
       found.singles.push_back(std::move(better));
     }
-    std::ranges::stable_sort(found.singles, {}, &Candidate::surprise);
+    std::ranges::stable_sort(found.singles, {}, &Candidate::log_loss);
     if (Errors(found.singles.front().model, sets).validation <= kExplained) {
       found.pairs.clear();
       return found;
     }
   }
-  if (!promises_a_third(Errors(sets.base, sets), Errors(best_pair.model, sets))) return found;
-  found.triples = search(best_pair.model, best_pair.kinds, 0.8, 1.0);
+  if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
+  found.triples = search(pair->model, pair->kinds, 0.8, 1.0);
   add_exchanged(found.triples, found.singles, sets);
   const auto triple = std::ranges::find_if(found.triples, physical);
   if (triple == found.triples.end()) return found;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "host/compare/chance.hpp"
 #include "host/dense_solutions.hpp"
@@ -93,7 +94,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
 }
 
 double EffortRegression::confidence(const ScreenedModel& before, const ScreenedModel& after) const {
-  return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1);
+  return confidence_of_improvement(squares_by_block(before.residual), squares_by_block(after.residual), 1);
 }
 
 EffortRegression::Prior EffortRegression::belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
@@ -168,16 +169,17 @@ void EffortRegression::measure(ScreenedModel& model, double acting) const {
   model.validate = root_mean_square(rows_, model.residual, true) / (acting * effort_validate_);
 }
 
-SetError EffortRegression::by_block(const VectorXd& residual) const {
-  SetError error;
+std::vector<double> EffortRegression::squares_by_block(const VectorXd& residual) const {
+  std::vector<double> squares;
+  std::optional<std::size_t> block;
   for (Index k = 0; k < residual.size(); ++k) {
     const auto row = static_cast<std::size_t>(k);
     if (!rows_.judges[row]) continue;
-    if (error.windows.empty() || error.windows.back().window != rows_.block[row])
-      error.windows.push_back({rows_.record[row], rows_.block[row]});
-    error.windows.back().surprise += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
+    if (block != rows_.block[row]) squares.push_back(0.0);
+    block = rows_.block[row];
+    squares.back() += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
   }
-  return error;
+  return squares;
 }
 
 }  // namespace host

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "host/compare/comparison.hpp"
 #include "host/effort/effort_rows.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "sim/drive_description.hpp"
@@ -59,7 +58,7 @@ class EffortRegression {
   double effective_variance(const Eigen::MatrixXd& phi, const Eigen::VectorXd& theta) const;
   /// `acting`: product of EffortTerm::acting of all terms.
   void measure(ScreenedModel& model, double acting) const;
-  SetError by_block(const Eigen::VectorXd& residual) const;
+  std::vector<double> squares_by_block(const Eigen::VectorXd& residual) const;
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;

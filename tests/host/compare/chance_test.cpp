@@ -7,23 +7,16 @@
 
 namespace {
 
-host::SetError errors(const std::vector<double>& surprises) {
-  host::SetError error;
-  for (std::size_t k = 0; k < surprises.size(); ++k)
-    error.windows.push_back({.record = 0, .window = k, .surprise = surprises[k]});
-  return error;
-}
-
 TEST(Chance, AnImprovementInEveryWindowIsCertain) {
   const std::vector<double> before(400, 4.0), after(400, 1.0);
-  EXPECT_EQ(host::confidence_of_improvement(errors(before), errors(after)), 1.0);
-  EXPECT_EQ(host::confidence_of_improvement(errors(after), errors(before)), 0.0);
+  EXPECT_EQ(host::confidence_of_improvement(before, after), 1.0);
+  EXPECT_EQ(host::confidence_of_improvement(after, before), 0.0);
 }
 
 TEST(Chance, NoChangeIsNoImprovement) {
   const std::vector<double> same(400, 4.0);
-  EXPECT_EQ(host::confidence_of_improvement(errors(same), errors(same)), 0.0);
-  EXPECT_EQ(host::confidence_of_improvement(errors({}), errors({})), 0.0);
+  EXPECT_EQ(host::confidence_of_improvement(same, same), 0.0);
+  EXPECT_EQ(host::confidence_of_improvement({}, {}), 0.0);
 }
 
 TEST(Chance, NoiseThatSumsToNothingIsEvenOdds) {
@@ -40,7 +33,7 @@ TEST(Chance, NoiseThatSumsToNothingIsEvenOdds) {
       }
     }
   // 2000 draws give a standard deviation of 0.011; the tolerance is four of them.
-  EXPECT_NEAR(host::confidence_of_improvement(errors(before), errors(after), 10), 0.5, 0.045);
+  EXPECT_NEAR(host::confidence_of_improvement(before, after, 10), 0.5, 0.045);
 }
 
 TEST(Chance, OneLuckyBlockIsNotConfidence) {
@@ -48,7 +41,7 @@ TEST(Chance, OneLuckyBlockIsNotConfidence) {
   // resampled sets.
   std::vector<double> before(4000, 1.0), after(4000, 1.01);
   for (std::size_t k = 0; k < 10; ++k) before[k] = 1000.0;
-  const double confidence = host::confidence_of_improvement(errors(before), errors(after));
+  const double confidence = host::confidence_of_improvement(before, after);
   EXPECT_NEAR(confidence, 1.0 - 1.0 / std::exp(1.0), 0.045);
 }
 

@@ -11,26 +11,26 @@
 
 namespace {
 
-double surprise_of(const sim::Drive& drive, host::RecordSet set, double factor) {
+double log_loss_of(const sim::Drive& drive, host::RecordSet set, double factor) {
   for (host::ComparedRecord& compared : set.records)
     for (std::vector<double>* floor : {&compared.floor.x, &compared.floor.w})
       for (double& value : *floor) value *= factor;
-  return host::error_of(drive, set).surprise;
+  return host::error_of(drive, set).log_loss;
 }
 
 /// A model that is uncertain of a motion must not be better for it. Where floors are too small, their common factor
 /// makes up for it.
-TEST(Surprise, ChargesUncertaintyAndForgivesFloorsThatAreAllTooSmall) {
+TEST(LogLoss, ChargesUncertaintyAndForgivesFloorsThatAreAllTooSmall) {
   const host::Record record = HandMade::record(3.0);
   sim::DriveDescription model = HandMade::model();
   const host::RecordSet set = host::compare_on({&record}, model);
   for (double& value : model.find("inertia")->parameters | std::views::values) value *= 1.3;
   const sim::Drive wrong(model);
-  const double here = surprise_of(wrong, set, 0.5);
-  EXPECT_NEAR(surprise_of(wrong, set, 0.25), here, 1e-3);
-  EXPECT_GT(surprise_of(wrong, set, 1e3), here + 1.0);
-  EXPECT_NEAR(surprise_of(wrong, set, 1e6) - surprise_of(wrong, set, 1e5), std::log(10.0), 1e-3);
-  EXPECT_LT(surprise_of(sim::Drive(HandMade::model()), set, 0.5), here);
+  const double here = log_loss_of(wrong, set, 0.5);
+  EXPECT_NEAR(log_loss_of(wrong, set, 0.25), here, 1e-3);
+  EXPECT_GT(log_loss_of(wrong, set, 1e3), here + 1.0);
+  EXPECT_NEAR(log_loss_of(wrong, set, 1e6) - log_loss_of(wrong, set, 1e5), std::log(10.0), 1e-3);
+  EXPECT_LT(log_loss_of(sim::Drive(HandMade::model()), set, 0.5), here);
 }
 
 }  // namespace

@@ -80,26 +80,22 @@ TEST(Claim, TheEndOfARangeIsSeenButNotWhereAPartIsAbsent) {
   EXPECT_THAT(host::parameters_on_bound(model, {"friction_lag"}), testing::IsEmpty());
 }
 
-host::SetError errors(std::size_t windows, double surprise) {
-  host::SetError error;
-  for (std::size_t k = 0; k < windows; ++k) error.windows.push_back({.record = 0, .window = k, .surprise = surprise});
-  return error;
-}
+std::vector<double> losses(std::size_t windows, double each) { return std::vector<double>(windows, each); }
 
 TEST(Claim, LuckIsRuledOutByWindowsAndBroughtBackByCandidates) {
   // If all of five blocks improve, one combination of signs in 32 gives as large a gain; of twenty blocks, one in a
   // million.
-  EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 1, 2), 1.0 / 32.0, 0.006);
-  EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 20, 2), 20.0 / 32.0, 0.12);
-  EXPECT_LT(host::probability_of_luck(errors(40, 4.0), errors(40, 1.0), 20, 2), 0.01);
-  EXPECT_EQ(host::probability_of_luck(errors(40, 1.0), errors(40, 4.0), 20, 2), 1.0);
-  EXPECT_EQ(host::probability_of_luck(errors(0, 1.0), errors(0, 4.0), 20, 2), 1.0);
+  EXPECT_NEAR(host::probability_of_luck(losses(10, 4.0), losses(10, 1.0), 1, 2), 1.0 / 32.0, 0.006);
+  EXPECT_NEAR(host::probability_of_luck(losses(10, 4.0), losses(10, 1.0), 20, 2), 20.0 / 32.0, 0.12);
+  EXPECT_LT(host::probability_of_luck(losses(40, 4.0), losses(40, 1.0), 20, 2), 0.01);
+  EXPECT_EQ(host::probability_of_luck(losses(40, 1.0), losses(40, 4.0), 20, 2), 1.0);
+  EXPECT_EQ(host::probability_of_luck(losses(0, 1.0), losses(0, 4.0), 20, 2), 1.0);
 }
 
 TEST(Claim, TheSecondsToRecordSufficeWhereAllImproves) {
   for (const std::size_t tried : {1U, 25U, 50U}) {
     const auto windows = static_cast<std::size_t>(std::ceil(host::least_validation_s(tried) / host::kWindow_s));
-    EXPECT_LE(host::probability_of_luck(errors(windows + 1, 4.0), errors(windows + 1, 1.0), tried, 1), host::kMostLuck)
+    EXPECT_LE(host::probability_of_luck(losses(windows + 1, 4.0), losses(windows + 1, 1.0), tried, 1), host::kMostLuck)
         << tried;
   }
 }
