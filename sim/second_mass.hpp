@@ -29,7 +29,8 @@ inline ParameterInfo load_friction_parameter() {
           .lower = 0.0,
           .upper = 1.0,
           .starts = {0.5},
-          .optional = true};
+          .optional = true,
+          .absent_at_upper = true};
 }
 
 inline ParameterInfo load_viscous_parameter() {
@@ -40,7 +41,8 @@ inline ParameterInfo load_viscous_parameter() {
           .lower = 0.0,
           .upper = 1.0,
           .starts = {0.2},
-          .optional = true};
+          .optional = true,
+          .absent_at_upper = true};
 }
 
 }  // namespace sim

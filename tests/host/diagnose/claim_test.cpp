@@ -76,6 +76,12 @@ TEST(Claim, TheEndOfARangeIsSeenButNotWhereAPartIsAbsent) {
   EXPECT_THAT(host::parameters_on_bound(model, {"compliance"}), testing::IsEmpty()) << "an undamped spring is a spring";
   model.effects.back().parameters["load_fraction"] = 0.02;
   EXPECT_THAT(host::parameters_on_bound(model, {"compliance"}), testing::ElementsAre("compliance: load_fraction"));
+  model.effects.back() = {
+      "backlash",
+      {{"gap", 0.08}, {"load_fraction", 0.4}, {"resonance", 150.0}, {"damping_ratio", 0.05}, {"load_friction", 1.0}},
+      {},
+      {}};
+  EXPECT_THAT(host::parameters_on_bound(model, {"backlash"}), testing::IsEmpty()) << "all friction is on the load";
   model.effects.back() = {"friction_lag", {{"time", 1e-4}}, {}, {}};
   EXPECT_THAT(host::parameters_on_bound(model, {"friction_lag"}), testing::IsEmpty());
 }
