@@ -54,6 +54,7 @@ class Restarts {
     state_ = drive_.at(followed_travel(row), motion_.w[row]);
     if (row == 0) state_.rest_s = rest_before();
     row_ = row;
+    stood_ = 0;
     next_kept_ = index;
     begun_ = true;
     keep();
@@ -83,14 +84,29 @@ class Restarts {
   /// The corrected readings of a window depend on rows after the start of the following windows. So the states at these
   /// starts are stored on the way.
   void keep() {
-    while (next_kept_ < prepared_.windows.size() && prepared_.windows[next_kept_].begin == row_) {
+    while (next_kept_ < prepared_.windows.size() && prepared_.windows[next_kept_].begin <= row_) {
       kept_.push_back(state_);
       next_kept_ += stride_;
     }
   }
 
+  /// A second mass that has settled at rest keeps its state. Returns the first row, at most `row`, that must be
+  /// followed again: its memory before the next motion.
+  std::size_t end_of_settled(std::size_t row) const {
+    if (!drive_.has_second_mass() || drive_.dwell_gain > 0.0 || stood_ < memory_) return row_;
+    std::size_t end = row_;
+    while (end < row + memory_ && end < motion_.standing.size() && motion_.standing[end]) ++end;
+    return std::min(row, end - std::min(end, memory_));
+  }
+
   void follow_to(std::size_t row) {
     while (row_ < row) {
+      if (const std::size_t end = end_of_settled(row); end > row_) {
+        row_ = end;
+        keep();
+        continue;
+      }
+      stood_ = motion_.standing[row_] ? stood_ + 1 : 0;
       if (errs_) {
         const double x = motion_.x[row_];
         reading_[row_] = drive_.travel_at_reading(x) - x;
@@ -133,6 +149,7 @@ class Restarts {
   bool errs_, shapes_;
   sim::DriveState state_;  ///< state of the drive along the measured motion
   std::size_t row_ = 0;
+  std::size_t stood_ = 0;  ///< rows at rest that were followed
   bool begun_ = false;
   std::deque<sim::DriveState> kept_;  ///< states at the starts of windows that are not yet requested
   std::size_t next_kept_ = 0;

@@ -30,15 +30,21 @@ constexpr double kClose = 1.5;
 /// Two starts of one effect are both fitted further while the ratio of their errors is below this.
 constexpr double kOpenRace = 1.25;
 
+/// FitOptions::kept_slopes_until of the fits that rank starts.
+constexpr double kKeptSlopes = 0.5;
 /// A drive with one integrator step per sample needs at most a third of these budgets. So a resonance of 200 Hz at 1
 /// kHz (five steps per sample) still gets as many passes as most fits take. All fits of a search together take at most
 /// some 400 million steps.
-constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
-constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
+constexpr FitOptions kFirstLook{
+    .most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6, .kept_slopes_until = kKeptSlopes};
+constexpr FitOptions kSeriousFit{
+    .most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6, .kept_slopes_until = kKeptSlopes};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
 /// Budget for each start near a finalist: enough to find the deepest local minimum.
-constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
+constexpr FitOptions kTryout{
+    .most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6, .kept_slopes_until = kKeptSlopes};
 constexpr std::size_t kBestOfTryout = 4;
+constexpr int kFirstSteps = 3;  // of each start, before the better ones are fitted further
 /// If the base itself needs many small steps, so does every candidate. Each candidate then gets this share of its
 /// budget.
 constexpr double kCostlyPart = 0.4;
@@ -267,10 +273,16 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
     return fits;
   };
   const RecordSet few = affordable(set, model, kTryout);
-  if (few.stride > set.stride && starts.size() > kBestOfTryout) {
-    const std::vector<FitResult> tryouts = fitted(few, kTryout);
-    starts = {model};
-    for (std::size_t k = 0; k + 1 < kBestOfTryout; ++k) starts.push_back(tryouts[k].model);
+  if (starts.size() > kBestOfTryout) {
+    // Successive halving (Jamieson and Talwalkar 2016): all starts get a few steps, the best of them more.
+    const auto keep_best = [&](const std::vector<FitResult>& of, std::size_t most) {
+      starts = {model};
+      for (std::size_t k = 0; k < of.size() && starts.size() < most; ++k) starts.push_back(of[k].model);
+    };
+    FitOptions first = kTryout;
+    first.most_iterations = kFirstSteps;
+    keep_best(fitted(few, first), 2 * kBestOfTryout);
+    keep_best(fitted(few, kTryout), kBestOfTryout);
   }
   return fitted(set, kSeriousFit).front().model;
 }
@@ -314,6 +326,23 @@ std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::D
     lost.back().model.effects.push_back(start.effect);
   }
   return lost;
+}
+
+/// Keeps the first of several starts that begin with the same values.
+void drop_same(std::vector<Start>& starts) {
+  constexpr double kSame = 0.01;
+  const auto is_same = [](const Start& one, const Start& other) {
+    const sim::EffectEntry &a = one.model.effects.back(), &b = other.model.effects.back();
+    return a.kind == b.kind && std::ranges::all_of(a.parameters, [&](const auto& parameter) {
+             const auto& [id, value] = parameter;
+             return b.has(id) && std::abs(b.at(id) - value) <= kSame * std::abs(value);
+           });
+  };
+  std::vector<Start> kept;
+  for (Start& start : starts)
+    if (std::ranges::none_of(kept, [&](const Start& other) { return is_same(start, other); }))
+      kept.push_back(std::move(start));
+  starts = std::move(kept);
 }
 
 /// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
@@ -410,6 +439,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   std::vector<Start> lost = lost_starts(starts, model);
   for_each_in_parallel(lost.size(),
                        [&](std::size_t k) { lost[k].model = fit_model(lost[k].model, coarse, kOwnSize).model; });
+  drop_same(lost);
   fit_all(lost, coarse, budgeted(kFirstLook));
   std::ranges::move(lost, std::back_inserter(starts));
   std::ranges::stable_sort(starts, {}, &Start::error);

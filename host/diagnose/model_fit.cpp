@@ -20,8 +20,13 @@ constexpr double kDifferenceStep = 1e-4;
 
 class WindowResiduals : public ceres::CostFunction {
  public:
-  WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
-      : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
+  WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set,
+                  double kept_slopes_until = 1.0)
+      : model_(model),
+        vector_(vector),
+        set_(set),
+        rows_(static_cast<Eigen::Index>(residual_count(set))),
+        kept_until_(kept_slopes_until) {
     // A prior has the weight of one further measurement with this set's error.
     const auto windows = static_cast<double>(std::max<std::size_t>(1, set.used_windows()));
     belief_weight_ = std::sqrt(std::max(1.0, set.common_square / kCommonSquare) / windows);
@@ -36,15 +41,23 @@ class WindowResiduals : public ceres::CostFunction {
     const auto columns = static_cast<Eigen::Index>(vector_.size());
     const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);
     Eigen::Map<Eigen::VectorXd> here(residuals, rows_);
-    evaluate(scaled, here.data());
+    here = residuals_at(scaled);
     if (!here.allFinite() || is_cancelled()) return false;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(jacobians[0], rows_,
                                                                                                 columns);
     Eigen::VectorXd there(rows_);
+    const double square = here.squaredNorm();
+    const bool keeps = kept_until_ < 1.0;
+    const bool has_kept = kept_.size() > 0 && square > kept_until_ * kept_square_;
+    if (keeps && !has_kept) kept_square_ = square;
     for (Eigen::Index column = 0; column < columns; ++column) {
       if (is_cancelled()) return false;
       const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
+      if (has_kept && free.effect + 1 < model_.effects.size()) {
+        jacobian.col(column) = kept_.col(column);
+        continue;
+      }
       // A step down from the upper bound, because a step up would be clamped.
       const bool at_top = scaled(column) * free.scale + kDifferenceStep * free.scale > free.upper;
       const double step = at_top ? -kDifferenceStep : kDifferenceStep;
@@ -53,12 +66,24 @@ class WindowResiduals : public ceres::CostFunction {
       evaluate(moved, there.data());
       jacobian.col(column) = (there - here) / step;
     }
+    if (keeps && !has_kept) kept_ = jacobian;
     return jacobian.allFinite();
   }
 
   double steps() const { return steps_; }
 
  private:
+  /// The residuals here. Ceres asks for those of one point up to three times in a row: in the line search, for the new
+  /// cost, and with the slopes.
+  const Eigen::VectorXd& residuals_at(const Eigen::VectorXd& scaled) const {
+    if (point_.size() != scaled.size() || point_ != scaled) {
+      point_ = scaled;
+      at_point_.resize(rows_);
+      evaluate(scaled, at_point_.data());
+    }
+    return at_point_;
+  }
+
   void evaluate(const Eigen::VectorXd& scaled, double* out) const {
     sim::DriveDescription model = model_;
     Eigen::VectorXd values(scaled.size());
@@ -81,6 +106,10 @@ class WindowResiduals : public ceres::CostFunction {
   const RecordSet& set_;
   Eigen::Index rows_;
   double belief_weight_ = 0.0;
+  double kept_until_;
+  mutable Eigen::MatrixXd kept_ = {};  ///< slopes, and the squared error at which they were computed
+  mutable double kept_square_ = 0.0;
+  mutable Eigen::VectorXd point_ = {}, at_point_ = {};  ///< the last point, and its residuals
   mutable double steps_ = 0.0;
 };
 
@@ -103,13 +132,14 @@ class Budget : public ceres::IterationCallback {
 
 FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options) {
   const ParameterVector vector(start, options.freedom);
+  if (vector.size() == 0) return {.model = start, .robust = error_of(sim::Drive(start), training).robust, .steps = 0.0};
   const Eigen::VectorXd initial = vector.read(start);
   Eigen::VectorXd scaled(initial.size());
   for (Eigen::Index k = 0; k < scaled.size(); ++k)
     scaled(k) = initial(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
 
   ceres::Problem problem;
-  auto* residuals = new WindowResiduals(start, vector, training);  // the problem owns it
+  auto* residuals = new WindowResiduals(start, vector, training, options.kept_slopes_until);  // the problem owns it
   problem.AddResidualBlock(residuals, nullptr, scaled.data());
   for (std::size_t k = 0; k < vector.size(); ++k) {
     const FreeParameter& free = vector.parameters()[k];

@@ -10,6 +10,7 @@ namespace host {
 ParameterCovariance covariance_of(const sim::DriveDescription& model, const RecordSet& training) {
   ParameterCovariance result{ParameterVector(model), {}, {}};
   const auto columns = static_cast<Eigen::Index>(result.vector.size());
+  if (columns == 0) return result;
   result.values = result.vector.read(model);
   const auto [here, jacobian] = linearise(model, result.vector, training);
   const Eigen::Index rows = here.size();

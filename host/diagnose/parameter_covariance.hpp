@@ -11,7 +11,7 @@ namespace host {
 struct ParameterCovariance {
   ParameterVector vector;
   Eigen::VectorXd values;  ///< values of the parameters, in their own units
-  Eigen::MatrixXd matrix;  ///< covariance of the values; empty if the model diverges
+  Eigen::MatrixXd matrix;  ///< covariance of the values; empty if the model diverges or is held
 };
 
 /// Covariance at the model's present values; cluster-robust, because residuals are correlated within a window.

@@ -1,4 +1,4 @@
-// The budget of a fit, in steps of the integrator.
+// Fits of a model to records: their budget, and what they leave and move.
 #include "host/diagnose/model_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -80,6 +80,31 @@ TEST(Fit, WeighsABeliefAgainstTheRecord) {
   const auto conflicts = host::data_sheet_conflicts(fitted_with(0.02 * believed), set);
   ASSERT_EQ(conflicts.size(), 1u) << "the record is eleven deviations off";
   EXPECT_EQ(conflicts.front().known, believed);
+}
+
+// Catches a solver that is called with nothing to solve for.
+TEST(Fit, ReturnsAModelWhoseParametersAreAllHeld) {
+  const host::Record record = HandMade::record(3.0);
+  sim::DriveDescription model = heavier(HandMade::model());
+  for (sim::EffectEntry& entry : model.effects)
+    for (const auto& [id, value] : entry.parameters) entry.held.insert(id);
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const host::FitResult fit = host::fit_model(model, set);
+  EXPECT_EQ(fit.robust, host::error_of(sim::Drive(model), set).robust);
+  EXPECT_EQ(fit.model.find("inertia")->at("J"), model.find("inertia")->at("J"));
+  EXPECT_TRUE(host::estimate_intervals(model, set).empty());
+}
+
+// Catches slopes that are kept for good, and slopes that are never kept.
+TEST(Fit, WithKeptSlopesEndsNearTheOptimumInFewerSteps) {
+  const host::Record record = HandMade::record(3.0);
+  sim::DriveDescription model = heavier(HandMade::model());
+  model.effects.push_back({"constant_torque", {{"torque", 0.3}}, {}, {}});
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const host::FitResult exact = host::fit_model(model, set);
+  EXPECT_LT(host::fit_model(model, set, {.kept_slopes_until = 0.5}).robust, 1.05 * exact.robust);
+  const host::FitResult chord = host::fit_model(model, set, {.kept_slopes_until = 0.0});
+  EXPECT_LT(chord.steps / chord.iterations, 0.7 * exact.steps / exact.iterations);
 }
 
 }  // namespace
