@@ -28,7 +28,7 @@ inline ParameterInfo load_friction_parameter() {
           .doc = "p: part of the friction that acts on the load's side; 1 unless given",
           .lower = 0.0,
           .upper = 1.0,
-          .starts = {0.5},
+          .starts = {0.5, 0.0},
           .optional = true,
           .absent_at_upper = true};
 }

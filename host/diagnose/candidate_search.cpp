@@ -394,18 +394,22 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
       if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
         starts_of[k].push_back({infos[k], std::move(start)});
     const bool is_scanned = !infos[k]->periodic && starts_of[k].size() > kMostStarts;
-    // Starts in which motor and load share the friction, and starts in which the load has all of it, are scanned
-    // separately, so that both reach the next stage.
-    std::vector<Start> shared;
+    // All friction on the load, and each other way to share it with the motor, is scanned separately, so that each
+    // reaches the next stage.
+    std::vector<std::vector<Start>> ways{std::move(starts_of[k])};
     if (const sim::ParameterInfo* friction = infos[k]->parameter("load_friction"))
-      for (const Start& all_on_load : starts_of[k]) {
-        shared.push_back(all_on_load);
-        shared.back().model.effects.back().parameters[std::string(friction->id)] = friction->starts.front();
-        shared.back().effect = shared.back().model.effects.back();
+      for (const double part : friction->starts) {
+        ways.push_back(ways.front());
+        for (Start& shared : ways.back()) {
+          shared.model.effects.back().parameters[std::string(friction->id)] = part;
+          shared.effect = shared.model.effects.back();
+        }
       }
-    for (std::vector<Start>* way : {&starts_of[k], &shared})
-      if (is_scanned && !way->empty()) scan(*way, model, medium);
-    std::ranges::move(shared, std::back_inserter(starts_of[k]));
+    starts_of[k].clear();
+    for (std::vector<Start>& way : ways) {
+      if (is_scanned && !way.empty()) scan(way, model, medium);
+      std::ranges::move(way, std::back_inserter(starts_of[k]));
+    }
   });
   std::vector<Start> starts;
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
