@@ -5,47 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
 #include "host/exit_codes.hpp"
 #include "host/report/text_format.hpp"
-#include "host/workbench/folder.hpp"
 
 namespace host::workbench {
 
 namespace {
 
-constexpr std::size_t kMostNames = 500;
 constexpr std::array kTasks{std::pair{"compare", Task::compare},   std::pair{"identify", Task::identify},
                             std::pair{"diagnose", Task::diagnose}, std::pair{"add", Task::add},
                             std::pair{"adjust", Task::adjust},     std::pair{"improve", Task::improve}};
-
-[[noreturn]] void refuse(const std::string& field, const std::string& what) {
-  throw Failure(ExitCode::usage, fmt::format("request, \"{}\": {}", field, what));
-}
-
-nlohmann::json object_of(std::string_view text) {
-  if (text.size() > kLongestRequest)
-    throw Failure(ExitCode::usage, fmt::format("request: longer than {} bytes", kLongestRequest));
-  nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-  if (!document.is_object()) throw Failure(ExitCode::usage, "request: expected a JSON object");
-  return document;
-}
-
-void require_known(const nlohmann::json& object, std::initializer_list<std::string_view> known) {
-  for (const auto& item : object.items())
-    if (std::ranges::find(known, item.key()) == known.end()) refuse(item.key(), "no such field");
-}
-
-std::string text_of(const nlohmann::json& object, const std::string& field) {
-  const auto found = object.find(field);
-  if (found == object.end()) return "";
-  if (!found->is_string()) refuse(field, "expected a text");
-  return found->get<std::string>();
-}
 
 /// Accepts a lower-case word, such as the name of an effect or of a fault of the log.
 std::string word_of(const std::string& text, const std::string& field) {
@@ -69,23 +41,6 @@ std::string value_of(const std::string& text, const std::string& field) {
   return text;
 }
 
-bool flag_of(const nlohmann::json& object, const std::string& field) {
-  const auto found = object.find(field);
-  if (found == object.end()) return false;
-  if (!found->is_boolean()) refuse(field, "expected true or false");
-  return found->get<bool>();
-}
-
-std::string file_of(const std::string& name, const std::string& field) {
-  if (!is_plain_name(name)) refuse(field, "expected the name of a file below the folder");
-  return name;
-}
-
-double number_of(const nlohmann::json& value, const std::string& field) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(field, "expected a number");
-  return value.get<double>();
-}
-
 std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   const auto found = object.find("stretch");
   if (found == object.end()) return std::nullopt;
@@ -93,19 +48,6 @@ std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   const TimeSpan stretch{number_of((*found)[0], "stretch"), number_of((*found)[1], "stretch")};
   if (!(stretch.from_s < stretch.to_s)) refuse("stretch", "it ends after it begins");
   return stretch;
-}
-
-template <typename Check>
-std::vector<std::string> list_of(const nlohmann::json& object, const std::string& field, Check check) {
-  std::vector<std::string> texts;
-  const auto found = object.find(field);
-  if (found == object.end()) return texts;
-  if (!found->is_array() || found->size() > kMostNames) refuse(field, "expected a list of names");
-  for (const nlohmann::json& item : *found) {
-    if (!item.is_string()) refuse(field, "expected a list of names");
-    texts.push_back(check(item.get<std::string>(), field));
-  }
-  return texts;
 }
 
 Focus focus_of(const nlohmann::json& object) {

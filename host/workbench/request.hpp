@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/compare/focus.hpp"
+#include "host/workbench/request_fields.hpp"
 
 namespace host::workbench {
 
@@ -26,8 +27,6 @@ struct Request {
   bool quick = false;               ///< for diagnose
   Focus focus;                      ///< for compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP]
 };
-
-inline constexpr std::size_t kLongestRequest = 65'536;
 
 /// Throws Failure(usage) naming the field and its expected value. Names are plain (is_plain_name); the files may be
 /// missing.
