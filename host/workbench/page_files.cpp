@@ -26,6 +26,7 @@ AXIS_EMBED(axis_workbench_jobs, AXIS_PAGE_DIR "/jobs.js");
 AXIS_EMBED(axis_workbench_opening, AXIS_PAGE_DIR "/opening.js");
 AXIS_EMBED(axis_workbench_plot_axes, AXIS_PAGE_DIR "/plot_axes.js");
 AXIS_EMBED(axis_workbench_plot_files, AXIS_PAGE_DIR "/plot_files.js");
+AXIS_EMBED(axis_workbench_plot_svg, AXIS_PAGE_DIR "/plot_svg.js");
 AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
 AXIS_EMBED(axis_workbench_stops, AXIS_PAGE_DIR "/stops.js");
 
@@ -58,6 +59,7 @@ const std::vector<PageFile>& page_files() {
       {"opening.js", kScript, AXIS_PAGE_FILE(opening)},
       {"plot_axes.js", kScript, AXIS_PAGE_FILE(plot_axes)},
       {"plot_files.js", kScript, AXIS_PAGE_FILE(plot_files)},
+      {"plot_svg.js", kScript, AXIS_PAGE_FILE(plot_svg)},
       {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
       {"stops.js", kScript, AXIS_PAGE_FILE(stops)},
       {"dygraphs.js", kScript, assets::dygraphs_script()},

@@ -62,6 +62,14 @@ Focus focus_of(const nlohmann::json& object) {
     if (map.size() != 2 || !std::ranges::all_of(map, is_known)) refuse("map", "expected two coordinates");
     focus.map = {map.front(), map.back()};
   }
+  if (const std::vector<std::string> plot = list_of(object, "plot", word_of); !plot.empty()) {
+    const auto is_known = [](const std::string& name) {
+      return std::ranges::find(kPlotCoordinates, name) != kPlotCoordinates.end();
+    };
+    if (plot.size() != 2 || !is_known(plot[0]) || !(is_known(plot[1]) || plot[1] == kPlottedError))
+      refuse("plot", "expected two coordinates");
+    focus.plot = {plot.front(), plot.back()};
+  }
   if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "expected a length above 0");
   return focus;
 }
@@ -91,10 +99,14 @@ Request parse_request(std::string_view text) {
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
-    require_known(document, {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map"});
+    require_known(document,
+                  {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map", "plot", "like"});
     request.models = list_of(document, "models", file_of);
     request.train = list_of(document, "records", file_of);
     request.focus = focus_of(document);
+    request.like = word_of(text_of(document, "like"), "like");
+    if (!request.like.empty() && std::ranges::find(kPlotCoordinates, request.like) == kPlotCoordinates.end())
+      refuse("like", "expected a coordinate");
   } else {
     require_known(document,
                   {"do", "model", "train", "validate", "accept", "absent", "kind", "over", "values", "quick"});
@@ -162,7 +174,9 @@ nlohmann::json to_json(const Request& request) {
     if (!request.focus.record.empty()) document["traces"] = request.focus.record;
     if (const auto& stretch = request.focus.stretch) document["stretch"] = {stretch->from_s, stretch->to_s};
     if (request.focus.map) document["map"] = {request.focus.map->first, request.focus.map->second};
+    if (request.focus.plot) document["plot"] = {request.focus.plot->first, request.focus.plot->second};
     if (request.focus.period_mm) document["period_mm"] = *request.focus.period_mm;
+    if (!request.like.empty()) document["like"] = request.like;
     return document;
   }
   document["model"] = request.models.front();
@@ -192,8 +206,10 @@ std::string command_line(const Request& request, const Outputs& outputs) {
   if (const auto& stretch = request.focus.stretch)
     line += fmt::format(" --stretch {} {}", stretch->from_s, stretch->to_s);
   if (request.focus.map) line += fmt::format(" --map {} {}", request.focus.map->first, request.focus.map->second);
+  if (request.focus.plot) line += fmt::format(" --plot {},{}", request.focus.plot->first, request.focus.plot->second);
   if (request.focus.period_mm) line += fmt::format(" --period {}", *request.focus.period_mm);
-  line += output_option("--over", request.over) + output_option("-o", outputs.model);
+  line += output_option("--like", request.like) + output_option("--over", request.over) +
+          output_option("-o", outputs.model);
   return line + output_option("--json", outputs.json) + output_option("--report", outputs.report);
 }
 

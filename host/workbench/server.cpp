@@ -278,6 +278,12 @@ struct Server::Parts {
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
     });
+    post("/api/like", [this](const Query&, Response& response, const std::string& body) {
+      const Request request = parse_request(body);
+      const std::lock_guard one_at_a_time(comparing);
+      const CancelledBy scope(&is_ending);
+      send(response, {{"document", look_alike(folder, request)}, {"command", command_line(request, {})}});
+    });
     post("/api/trial", [this](const Query&, Response& response, const std::string& body) {
       send_trial(parse_request(body), response);
     });
