@@ -28,13 +28,14 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/effort/"] = "host/effort/ host/infer/ " may["host/compare/"]
     may["host/diagnose/"] = "host/diagnose/ host/scale/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
-    may["host/workbench/"] = "host/workbench/ host/model/ host/opening/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
     may["host/path/"] = "host/path/ firmware/core/"
     may["host/gcode/"] = "host/gcode/ host/path/"
     may["host/link/"] = "host/link/ hal/"
     may["host/simulated_board/"] = "host/simulated_board/ host/link/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/device/"] = "host/device/ host/path/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/live/"] = "host/live/ " may["host/device/"]
+    may["host/workbench/"] = "host/workbench/ host/model/ host/opening/ " may["host/live/"] " " may["host/diagnose/"]
     may["host/external_plant/"] = "host/external_plant/ host/record/ sim/"
     may["host/response/"] = "host/response/ host/model/ host/report/ " may["host/device/"] " " may["host/identify/"]
     may["host/axes/"] = "host/axes/ host/infer/ " may["host/response/"]

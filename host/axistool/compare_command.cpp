@@ -16,6 +16,7 @@
 #include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/report/text_format.hpp"
+#include "host/workbench/look_alike.hpp"
 
 namespace axistool {
 
@@ -30,13 +31,15 @@ struct CompareArguments {
   std::string traces;
   std::vector<double> stretch;
   double period_mm = 0.0;
-  std::vector<std::string> map;
+  std::vector<std::string> map, plot;
+  std::string like;
 
   host::Focus focus() const {
     host::Focus chosen{.record = traces};
     if (!stretch.empty()) chosen.stretch = host::TimeSpan{stretch[0], stretch[1]};
     if (period_mm > 0.0) chosen.period_mm = period_mm;
     if (!map.empty()) chosen.map = {map[0], map[1]};
+    if (!plot.empty()) chosen.plot = {plot[0], plot[1]};
     return chosen;
   }
 };
@@ -81,8 +84,17 @@ host::ComparedModel compared(const std::string& path, const CompareArguments& ar
   return host::compare_with(path, model, std::move(records), arguments.window_s, arguments.accepted);
 }
 
+void print_likeness(const nlohmann::json& likeness) {
+  fmt::print("\nThe residual over {} has the shape of (correlation):\n",
+             host::spaced(likeness["over"].get<std::string>()));
+  for (const nlohmann::json& one : likeness["effects"])
+    fmt::print("  {:4.2f}  {}\n", one["likeness"].get<double>(), one["title"].get<std::string>());
+}
+
 void run(CompareArguments& arguments) {
   sort_files(arguments);
+  if (!arguments.plot.empty() && arguments.plot.front() == host::kPlottedError)
+    throw host::Failure(host::ExitCode::usage, "--plot X,Y: the error can be Y only");
   if (!arguments.predictions.empty())
     for (std::size_t r = 0; r < arguments.records.size(); ++r) host::output_target(predictions_path(arguments, r));
   if (std::vector<host::Record> tracks =
@@ -100,9 +112,17 @@ void run(CompareArguments& arguments) {
                                   host::predictions_csv(models[0].model, models[0].set.records[r].prepared));
   }
   if (!arguments.report.empty()) host::comparison_report(models, arguments.focus()).write(arguments.report);
-  if (!arguments.json.empty()) write_json(host::comparison_document(models), arguments.json);
+  const nlohmann::json likeness =
+      arguments.like.empty() ? nlohmann::json()
+                             : host::workbench::likeness_json(models.front(), arguments.focus(), arguments.like);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::comparison_document(models);
+    if (!likeness.is_null()) document["likeness"] = likeness;
+    write_json(document, arguments.json);
+  }
   if (arguments.json != "-") {
     fmt::print("{}", host::comparison_text(models, host::terminal_of(stdout)));
+    if (!likeness.is_null()) print_likeness(likeness);
     if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);
   }
   const auto fails = [&](const host::ComparedModel& one) {
@@ -140,6 +160,19 @@ void add_compare(CLI::App& app) {
   command->add_option("--map", arguments->map, "the two coordinates of the map of the residual: position, speed, ...")
       ->expected(2)
       ->check(CLI::IsMember(std::vector<std::string>(host::kMapCoordinates.begin(), host::kMapCoordinates.end())));
+  std::vector<std::string> plotted(host::kPlotCoordinates.begin(), host::kPlotCoordinates.end());
+  plotted.emplace_back(host::kPlottedError);
+  command
+      ->add_option("--plot", arguments->plot,
+                   "a further plot on the page, X and Y: position, phase (of --period), speed, acceleration, current, "
+                   "time, travel_since_reversal, rest, temperature; as Y also error")
+      ->expected(2)
+      ->delimiter(',')
+      ->check(CLI::IsMember(plotted));
+  command
+      ->add_option("--like", arguments->like,
+                   "list the effects whose own part has the shape of the residual over this coordinate: position, …")
+      ->check(CLI::IsMember(std::vector<std::string>(host::kPlotCoordinates.begin(), host::kPlotCoordinates.end())));
   command
       ->add_option("--fail-above", arguments->fail_above,
                    "exit code 1 if the combined error exceeds this multiple of the noise floor")
@@ -150,6 +183,8 @@ void add_compare(CLI::App& app) {
       "  axistool compare x.toml steps.csv jog.csv --report compare.html --json compare.json\n"
       "  axistool compare x.toml better.toml validate.csv --report both.html   # several models, on top of each other\n"
       "  axistool compare x.toml validate.csv --fail-above 2      # for scripts\n"
+      "  axistool compare x.toml jog.csv --report acceleration.html --plot acceleration,error\n"
+      "  axistool compare x.toml jog.csv --like speed             # which effects look like its residual over speed\n"
       "The model predicts from the recorded command alone. The noise floor is the error that sensor noise and the\n"
       "uncertainty of the restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped,\n"
       "mis-scaled channels) are listed first: correct them before you trust the rest.");

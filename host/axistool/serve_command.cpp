@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "host/atomic_file.hpp"
+#include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/own_folder.hpp"
@@ -26,6 +27,7 @@ struct ServeArguments {
   std::string folder = ".";
   int port = 0;
   bool no_browser = false;
+  host::workbench::LiveDevice board;
 };
 
 /// Opens the page through a private file that redirects to it, because the address contains the token and all users can
@@ -59,7 +61,7 @@ void run(const ServeArguments& arguments) {
   if (failed)
     throw host::Failure(host::ExitCode::bad_input,
                         fmt::format("{}: {}; name a folder", arguments.folder, failed.message()));
-  host::workbench::Server server(arguments.port);
+  host::workbench::Server server(arguments.port, arguments.board);
   catch_interrupts();
   std::jthread answering([&server] { server.run(); });
   host::write_standard_output(server.url() + "\n");
@@ -83,16 +85,26 @@ void add_serve(CLI::App& app) {
   command->add_option("--port", arguments->port, "port on 127.0.0.1; 0 picks a free one")
       ->capture_default_str()
       ->check(CLI::Range(0, kLastPort));
+  CLI::Option* const device = command->add_option(
+      "--device", arguments->board.device,
+      "board for the page's Live view: usb:SERIAL, sim (started by `axistool sim`), socket:PATH; default: none");
+  note_role(*device, FileRole::device);
+  command->add_flag_callback(
+      "--sim", [arguments] { arguments->board.device = "sim"; }, "the same as --device sim");
+  command->add_option("--patience", arguments->board.patience_s, "time-out for the board's answers, s")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "print the address only");
   command->footer(
       "Examples:\n"
       "  axistool serve\n"
       "  axistool serve measurements --port 8080 --no-browser\n"
+      "  axistool serve --sim\n"
       "Prints its address when it is ready; Ctrl-C ends it. It answers only this computer, and only requests with the\n"
       "token in the address. It reads and writes nothing outside the folder. Results of jobs are in its subfolder\n"
       "\"workbench\"; extended models are beside their original. Every figure is the one that the command prints, and "
       "the\n"
-      "page shows the command.");
+      "page shows the command. With a board, one page at a time commands its axes, and they stop without it.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -191,6 +191,7 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report, c
                              "missing effect shows as a curve over its coordinate. The line breaks where there are no "
                              "samples; the strip below shows their number.",
                              effort, views.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
+  if (focus.plot) add_chosen_plot(report, views, *focus.plot, first.data.kind, period);
   add_residual_plots(report, views, first, period, Layout::overlaid);
   const DriveUnits units = units_of(first.data.kind);
   for (const auto& [name, title] :

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/compare/effort_residual.hpp"
+#include "host/compare/focus.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/binned_curve.hpp"
@@ -135,6 +136,7 @@ ResidualCoordinate coordinate_of(std::string_view name, sim::DriveKind kind, dou
   const DriveUnits units = units_of(kind);
   const double mm = travel_in_mm(kind);
   if (name == "position") return {{"position", "mm"}, &ResidualEffort::x, mm, mm * period};
+  if (name == "phase") return {{"position in the period", "mm"}, &ResidualEffort::x, mm, mm * period, period > 0.0};
   if (name == "acceleration") return {{"acceleration", units.acceleration}, &ResidualEffort::acceleration};
   if (name == "current") return {{"command", "V"}, &ResidualEffort::command_V};
   if (name == "time") return {{"time since start", "s"}, &ResidualEffort::t_s};
@@ -171,20 +173,38 @@ std::vector<ScatterSeries> direction_curves(const ResidualEffort& samples, const
   return curves;
 }
 
-void add_residual_plot(Report& report, const ResidualCoordinate& over, const std::string& title, const Axis& value,
-                       std::span<const ResidualView> views, ResidualEffort ResidualView::*what, Layout layout) {
+bool add_residual_plot(Report& report, const ResidualCoordinate& over, const std::string& title, const Axis& value,
+                       std::span<const ResidualView> views, ResidualEffort ResidualView::*what, Layout layout,
+                       const ResidualCoordinate* instead) {
   std::vector<ScatterPlot> plots;
   for (const ResidualView& view : views) {
     const ResidualEffort& samples = view.*what;
-    std::vector<ScatterSeries> curves = direction_curves(samples, samples.missing, over);
+    std::vector<ScatterSeries> curves =
+        direction_curves(samples, instead != nullptr ? instead->of(samples) : samples.missing, over);
     const bool own = views.size() == 1 || layout == Layout::side_by_side;
     if (own || plots.empty())
       plots.push_back(plot_over(over, own && views.size() > 1 ? title + ": " + view.name : title, value));
     append(plots.back(), own ? std::move(curves) : in_one_colour(std::move(curves), view));
   }
-  if (std::ranges::any_of(plots, [](const ScatterPlot& plot) { return plot.series.empty(); })) return;
+  if (std::ranges::any_of(plots, [](const ScatterPlot& plot) { return plot.series.empty(); })) return false;
   if (plots.size() > 1) share_range(plots);
   for (ScatterPlot& plot : plots) report.add(std::move(plot));
+  return true;
+}
+
+void add_chosen_plot(Report& report, std::span<const ResidualView> views,
+                     const std::pair<std::string, std::string>& names, sim::DriveKind kind, double period) {
+  const auto& [x, y] = names;
+  const bool is_error = y == kPlottedError;
+  const ResidualCoordinate over = coordinate_of(x, kind, period), instead = coordinate_of(y, kind, period);
+  const Axis value = is_error ? Axis{"missing " + effort_name(kind), units_of(kind).effort} : instead.axis;
+  std::string title = fmt::format("{} against {}", value.quantity, over.axis.quantity);
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+  const bool lacks_period = (x == "phase" || y == "phase") && !(period > 0.0);
+  if (!lacks_period && add_residual_plot(report, over, title, value, views, &ResidualView::force, Layout::overlaid,
+                                         is_error ? nullptr : &instead))
+    return;
+  report.add(Facts{title, {{"not drawn", lacks_period ? "a phase needs a period" : "the records do not show it"}}});
 }
 
 void add_residual_plots(Report& report, std::span<const ResidualView> views, const sim::DriveDescription& model,
@@ -195,13 +215,9 @@ void add_residual_plots(Report& report, std::span<const ResidualView> views, con
     add_residual_plot(report, over, title, missing, views, &ResidualView::force, layout);
   };
   add(coordinate_of("speed", kind), "Against speed");
-  ResidualCoordinate position = coordinate_of("position", kind, period);
-  if (period > 0.0) {
-    ResidualCoordinate in_period = position;
-    in_period.folded = true;
-    in_period.axis.quantity = "position in the period";
-    add(in_period, fmt::format("Within one period of {:.4g} mm", position.period));
-  }
+  const ResidualCoordinate position = coordinate_of("position", kind, period);
+  if (period > 0.0)
+    add(coordinate_of("phase", kind, period), fmt::format("Within one period of {:.4g} mm", position.period));
   add(position, "Along the travel");
   add(coordinate_of("acceleration", kind), "Against acceleration");
   add(coordinate_of("time", kind), "Over time");

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/compare/residual_effort.hpp"
@@ -37,7 +38,8 @@ struct ResidualCoordinate {
 };
 
 /// The coordinate with that name in EffectInfo::along. `period`: of the ripple along the travel, mm or m; 0 if there is
-/// none. "frequency" has no value at a sample; for "temperature" see ResidualEffort.
+/// none. "phase" is the position folded by it. "frequency" has no value at a sample; for "temperature" see
+/// ResidualEffort.
 ResidualCoordinate coordinate_of(std::string_view name, sim::DriveKind kind, double period = 0.0);
 
 /// The longest period of the model's ripples along the travel, else the pitch of its screw, else 0; mm or m.
@@ -53,9 +55,16 @@ enum class Layout {
   side_by_side  ///< one plot per model, with the same vertical range
 };
 
-/// Adds one of the residuals over a coordinate; nothing if a view has no samples.
-void add_residual_plot(Report& report, const ResidualCoordinate& over, const std::string& title, const Axis& value,
-                       std::span<const ResidualView> views, ResidualEffort ResidualView::*what, Layout layout);
+/// Adds one of the residuals over a coordinate, or `instead` of the residual another coordinate; nothing if a view has
+/// no samples, and then returns false.
+bool add_residual_plot(Report& report, const ResidualCoordinate& over, const std::string& title, const Axis& value,
+                       std::span<const ResidualView> views, ResidualEffort ResidualView::*what, Layout layout,
+                       const ResidualCoordinate* instead = nullptr);
+
+/// Adds the plot of a focus: one quantity over another, by direction. States why, if it cannot be drawn. `period`: as
+/// in coordinate_of().
+void add_chosen_plot(Report& report, std::span<const ResidualView> views,
+                     const std::pair<std::string, std::string>& names, sim::DriveKind kind, double period);
 
 /// Adds the missing torque or force over speed, position, acceleration and time, and the error of the speed channel if
 /// there is one. `period`: as in coordinate_of(). `model`: gives the units.

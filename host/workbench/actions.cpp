@@ -31,6 +31,7 @@
 #include "host/report/plot_json.hpp"
 #include "host/report/text_format.hpp"
 #include "host/workbench/effect_picture.hpp"
+#include "host/workbench/look_alike.hpp"
 
 namespace host::workbench {
 
@@ -114,6 +115,14 @@ Comparison compare(const Folder& folder, const Request& request) {
   const std::vector<ComparedModel> models = compared_models(folder, request);
   const std::size_t traces = record_in(request.focus, models.front().comparison);
   return {comparison_document(models), comparison_report(models, request.focus).html(), "", request.train[traces]};
+}
+
+nlohmann::json look_alike(const Folder& folder, const Request& request) {
+  if (request.task != Task::compare || request.like.empty())
+    throw Failure(ExitCode::usage, "request, \"like\": expected compare with a coordinate");
+  Request first = request;
+  first.models.resize(1);
+  return likeness_json(compared_models(folder, first).front(), request.focus, request.like);
 }
 
 Comparison compare_trial(const Folder& folder, const Request& request) {

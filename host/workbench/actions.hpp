@@ -28,6 +28,10 @@ std::vector<ComparedModel> compared_models(const Folder& folder, const Request& 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
 
+/// Effects whose part looks like the residual of the first model over the coordinate `like` (likeness_json). Throws as
+/// the command does.
+nlohmann::json look_alike(const Folder& folder, const Request& request);
+
 /// Compares the model with one that has the values of an adjust request. Writes the latter only to kTrial. Throws as
 /// the command does.
 Comparison compare_trial(const Folder& folder, const Request& request);

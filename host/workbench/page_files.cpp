@@ -9,6 +9,12 @@ AXIS_EMBED(axis_workbench_main, AXIS_PAGE_DIR "/main.js");
 AXIS_EMBED(axis_workbench_elements, AXIS_PAGE_DIR "/elements.js");
 AXIS_EMBED(axis_workbench_exchange, AXIS_PAGE_DIR "/exchange.js");
 AXIS_EMBED(axis_workbench_adjust, AXIS_PAGE_DIR "/adjust.js");
+AXIS_EMBED(axis_workbench_board, AXIS_PAGE_DIR "/board.js");
+AXIS_EMBED(axis_workbench_board_parameters, AXIS_PAGE_DIR "/board_parameters.js");
+AXIS_EMBED(axis_workbench_command, AXIS_PAGE_DIR "/command.js");
+AXIS_EMBED(axis_workbench_live, AXIS_PAGE_DIR "/live.js");
+AXIS_EMBED(axis_workbench_motion, AXIS_PAGE_DIR "/motion.js");
+AXIS_EMBED(axis_workbench_scope, AXIS_PAGE_DIR "/scope.js");
 AXIS_EMBED(axis_workbench_catalogue, AXIS_PAGE_DIR "/catalogue.js");
 AXIS_EMBED(axis_workbench_look, AXIS_PAGE_DIR "/look.js");
 AXIS_EMBED(axis_workbench_choice, AXIS_PAGE_DIR "/choice.js");
@@ -20,6 +26,7 @@ AXIS_EMBED(axis_workbench_jobs, AXIS_PAGE_DIR "/jobs.js");
 AXIS_EMBED(axis_workbench_opening, AXIS_PAGE_DIR "/opening.js");
 AXIS_EMBED(axis_workbench_plot_axes, AXIS_PAGE_DIR "/plot_axes.js");
 AXIS_EMBED(axis_workbench_plot_files, AXIS_PAGE_DIR "/plot_files.js");
+AXIS_EMBED(axis_workbench_plot_svg, AXIS_PAGE_DIR "/plot_svg.js");
 AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
 AXIS_EMBED(axis_workbench_stops, AXIS_PAGE_DIR "/stops.js");
 
@@ -35,6 +42,12 @@ const std::vector<PageFile>& page_files() {
       {"elements.js", kScript, AXIS_PAGE_FILE(elements)},
       {"exchange.js", kScript, AXIS_PAGE_FILE(exchange)},
       {"adjust.js", kScript, AXIS_PAGE_FILE(adjust)},
+      {"board.js", kScript, AXIS_PAGE_FILE(board)},
+      {"board_parameters.js", kScript, AXIS_PAGE_FILE(board_parameters)},
+      {"command.js", kScript, AXIS_PAGE_FILE(command)},
+      {"live.js", kScript, AXIS_PAGE_FILE(live)},
+      {"motion.js", kScript, AXIS_PAGE_FILE(motion)},
+      {"scope.js", kScript, AXIS_PAGE_FILE(scope)},
       {"catalogue.js", kScript, AXIS_PAGE_FILE(catalogue)},
       {"look.js", kScript, AXIS_PAGE_FILE(look)},
       {"choice.js", kScript, AXIS_PAGE_FILE(choice)},
@@ -46,6 +59,7 @@ const std::vector<PageFile>& page_files() {
       {"opening.js", kScript, AXIS_PAGE_FILE(opening)},
       {"plot_axes.js", kScript, AXIS_PAGE_FILE(plot_axes)},
       {"plot_files.js", kScript, AXIS_PAGE_FILE(plot_files)},
+      {"plot_svg.js", kScript, AXIS_PAGE_FILE(plot_svg)},
       {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
       {"stops.js", kScript, AXIS_PAGE_FILE(stops)},
       {"dygraphs.js", kScript, assets::dygraphs_script()},

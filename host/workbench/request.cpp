@@ -5,47 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
 #include "host/exit_codes.hpp"
 #include "host/report/text_format.hpp"
-#include "host/workbench/folder.hpp"
 
 namespace host::workbench {
 
 namespace {
 
-constexpr std::size_t kMostNames = 500;
 constexpr std::array kTasks{std::pair{"compare", Task::compare},   std::pair{"identify", Task::identify},
                             std::pair{"diagnose", Task::diagnose}, std::pair{"add", Task::add},
                             std::pair{"adjust", Task::adjust},     std::pair{"improve", Task::improve}};
-
-[[noreturn]] void refuse(const std::string& field, const std::string& what) {
-  throw Failure(ExitCode::usage, fmt::format("request, \"{}\": {}", field, what));
-}
-
-nlohmann::json object_of(std::string_view text) {
-  if (text.size() > kLongestRequest)
-    throw Failure(ExitCode::usage, fmt::format("request: longer than {} bytes", kLongestRequest));
-  nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-  if (!document.is_object()) throw Failure(ExitCode::usage, "request: expected a JSON object");
-  return document;
-}
-
-void require_known(const nlohmann::json& object, std::initializer_list<std::string_view> known) {
-  for (const auto& item : object.items())
-    if (std::ranges::find(known, item.key()) == known.end()) refuse(item.key(), "no such field");
-}
-
-std::string text_of(const nlohmann::json& object, const std::string& field) {
-  const auto found = object.find(field);
-  if (found == object.end()) return "";
-  if (!found->is_string()) refuse(field, "expected a text");
-  return found->get<std::string>();
-}
 
 /// Accepts a lower-case word, such as the name of an effect or of a fault of the log.
 std::string word_of(const std::string& text, const std::string& field) {
@@ -69,23 +41,6 @@ std::string value_of(const std::string& text, const std::string& field) {
   return text;
 }
 
-bool flag_of(const nlohmann::json& object, const std::string& field) {
-  const auto found = object.find(field);
-  if (found == object.end()) return false;
-  if (!found->is_boolean()) refuse(field, "expected true or false");
-  return found->get<bool>();
-}
-
-std::string file_of(const std::string& name, const std::string& field) {
-  if (!is_plain_name(name)) refuse(field, "expected the name of a file below the folder");
-  return name;
-}
-
-double number_of(const nlohmann::json& value, const std::string& field) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(field, "expected a number");
-  return value.get<double>();
-}
-
 std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   const auto found = object.find("stretch");
   if (found == object.end()) return std::nullopt;
@@ -93,19 +48,6 @@ std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   const TimeSpan stretch{number_of((*found)[0], "stretch"), number_of((*found)[1], "stretch")};
   if (!(stretch.from_s < stretch.to_s)) refuse("stretch", "it ends after it begins");
   return stretch;
-}
-
-template <typename Check>
-std::vector<std::string> list_of(const nlohmann::json& object, const std::string& field, Check check) {
-  std::vector<std::string> texts;
-  const auto found = object.find(field);
-  if (found == object.end()) return texts;
-  if (!found->is_array() || found->size() > kMostNames) refuse(field, "expected a list of names");
-  for (const nlohmann::json& item : *found) {
-    if (!item.is_string()) refuse(field, "expected a list of names");
-    texts.push_back(check(item.get<std::string>(), field));
-  }
-  return texts;
 }
 
 Focus focus_of(const nlohmann::json& object) {
@@ -119,6 +61,14 @@ Focus focus_of(const nlohmann::json& object) {
     };
     if (map.size() != 2 || !std::ranges::all_of(map, is_known)) refuse("map", "expected two coordinates");
     focus.map = {map.front(), map.back()};
+  }
+  if (const std::vector<std::string> plot = list_of(object, "plot", word_of); !plot.empty()) {
+    const auto is_known = [](const std::string& name) {
+      return std::ranges::find(kPlotCoordinates, name) != kPlotCoordinates.end();
+    };
+    if (plot.size() != 2 || !is_known(plot[0]) || !(is_known(plot[1]) || plot[1] == kPlottedError))
+      refuse("plot", "expected two coordinates");
+    focus.plot = {plot.front(), plot.back()};
   }
   if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "expected a length above 0");
   return focus;
@@ -149,10 +99,14 @@ Request parse_request(std::string_view text) {
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
-    require_known(document, {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map"});
+    require_known(document,
+                  {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map", "plot", "like"});
     request.models = list_of(document, "models", file_of);
     request.train = list_of(document, "records", file_of);
     request.focus = focus_of(document);
+    request.like = word_of(text_of(document, "like"), "like");
+    if (!request.like.empty() && std::ranges::find(kPlotCoordinates, request.like) == kPlotCoordinates.end())
+      refuse("like", "expected a coordinate");
   } else {
     require_known(document,
                   {"do", "model", "train", "validate", "accept", "absent", "kind", "over", "values", "quick"});
@@ -220,7 +174,9 @@ nlohmann::json to_json(const Request& request) {
     if (!request.focus.record.empty()) document["traces"] = request.focus.record;
     if (const auto& stretch = request.focus.stretch) document["stretch"] = {stretch->from_s, stretch->to_s};
     if (request.focus.map) document["map"] = {request.focus.map->first, request.focus.map->second};
+    if (request.focus.plot) document["plot"] = {request.focus.plot->first, request.focus.plot->second};
     if (request.focus.period_mm) document["period_mm"] = *request.focus.period_mm;
+    if (!request.like.empty()) document["like"] = request.like;
     return document;
   }
   document["model"] = request.models.front();
@@ -250,8 +206,10 @@ std::string command_line(const Request& request, const Outputs& outputs) {
   if (const auto& stretch = request.focus.stretch)
     line += fmt::format(" --stretch {} {}", stretch->from_s, stretch->to_s);
   if (request.focus.map) line += fmt::format(" --map {} {}", request.focus.map->first, request.focus.map->second);
+  if (request.focus.plot) line += fmt::format(" --plot {},{}", request.focus.plot->first, request.focus.plot->second);
   if (request.focus.period_mm) line += fmt::format(" --period {}", *request.focus.period_mm);
-  line += output_option("--over", request.over) + output_option("-o", outputs.model);
+  line += output_option("--like", request.like) + output_option("--over", request.over) +
+          output_option("-o", outputs.model);
   return line + output_option("--json", outputs.json) + output_option("--report", outputs.report);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/compare/focus.hpp"
+#include "host/workbench/request_fields.hpp"
 
 namespace host::workbench {
 
@@ -24,10 +25,10 @@ struct Request {
   std::string kind, over;           ///< for add
   std::vector<std::string> values;  ///< for adjust: "NAME=VALUE"
   bool quick = false;               ///< for diagnose
-  Focus focus;                      ///< for compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP]
+  std::string like;                 ///< for compare: coordinate over which to look for effects of that shape
+  Focus focus;                      ///< for compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP],
+                                    ///< "plot": [X, Y]
 };
-
-inline constexpr std::size_t kLongestRequest = 65'536;
 
 /// Throws Failure(usage) naming the field and its expected value. Names are plain (is_plain_name); the files may be
 /// missing.

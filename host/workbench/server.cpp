@@ -24,6 +24,8 @@
 #include "host/workbench/actions.hpp"
 #include "host/workbench/folder.hpp"
 #include "host/workbench/jobs.hpp"
+#include "host/workbench/live.hpp"
+#include "host/workbench/live_stream.hpp"
 #include "host/workbench/page_files.hpp"
 #include "host/workbench/request.hpp"
 #include "host/workbench/story.hpp"
@@ -42,6 +44,8 @@ enum Status { ok = 200, bad_request = 400, forbidden = 403, not_found = 404, too
 /// Enough threads for new connections, because each slow client occupies one.
 constexpr std::size_t kThreads = 64;
 constexpr time_t kPatience_s = 5;
+/// Buckets of a range of a paused stream.
+constexpr std::size_t kPoints = 1500;
 constexpr std::chrono::seconds kLongestBody(10), kLongestUpload(600);
 
 /// Loads only the page's own files; displayed content cannot contain scripts.
@@ -53,13 +57,13 @@ constexpr const char* kPagePolicy =
 constexpr const char* kReportPolicy =
     "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-std::string text_of(const nlohmann::json& document) {
+std::string reply_text(const nlohmann::json& document) {
   return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void send(Response& response, const nlohmann::json& document, int status = ok) {
   response.status = status;
-  response.set_content(text_of(document), "application/json");
+  response.set_content(reply_text(document), "application/json");
 }
 
 int status_of(ExitCode code) {
@@ -107,6 +111,8 @@ nlohmann::json document_or_null(const Folder& folder, const std::string& name) {
 struct Server::Parts {
   Folder folder;
   Jobs jobs{folder};
+  std::optional<Live> live;
+  std::atomic<std::size_t> streams = 0;
   httplib::Server http;
   int port = 0;
   std::optional<Access> access;
@@ -272,6 +278,12 @@ struct Server::Parts {
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
     });
+    post("/api/like", [this](const Query&, Response& response, const std::string& body) {
+      const Request request = parse_request(body);
+      const std::lock_guard one_at_a_time(comparing);
+      const CancelledBy scope(&is_ending);
+      send(response, {{"document", look_alike(folder, request)}, {"command", command_line(request, {})}});
+    });
     post("/api/trial", [this](const Query&, Response& response, const std::string& body) {
       send_trial(parse_request(body), response);
     });
@@ -296,7 +308,80 @@ struct Server::Parts {
     });
   }
 
-  explicit Parts(int wanted_port) {
+  Live& board() {
+    if (!live) throw Failure(ExitCode::no_such_device, "axistool serve was started without --device");
+    return *live;
+  }
+
+  /// A POST that commands the board; what `work` returns is sent.
+  template <typename Work>
+  void command(const std::string& path, Work work) {
+    post(path, [this, work](const Query&, Response& response, const std::string& body) {
+      send(response, work(board(), body));
+    });
+  }
+
+  void add_board_routes() {
+    using nlohmann::json;
+    get("/api/live", [this](const Query&, Response& response) {
+      send(response, live ? live->description() : json{{"device", nullptr}});
+    });
+    get("/api/live/stream",
+        [this](const Query& query, Response& response) { stream_live(board(), query, response, streams, is_ending); });
+    get("/api/live/parameters", [this](const Query&, Response& response) { send(response, board().parameters()); });
+    command("/api/live/rows",
+            [](Live& board, const std::string& body) { return board.rows(parse_rows(body), kPoints); });
+    command("/api/live/claim", [](Live& board, const std::string& body) {
+      object_of(body);
+      return json{{"owner", board.claim()}, {"number", board.state()["owner"]}};
+    });
+    command("/api/live/beat", [](Live& board, const std::string& body) {
+      board.beat(parse_owner(body));
+      return json::object();
+    });
+    command("/api/live/release", [](Live& board, const std::string& body) {
+      board.release(parse_owner(body));
+      return json::object();
+    });
+    command("/api/live/stop", [](Live& board, const std::string&) {
+      board.stop();
+      return json::object();
+    });
+    command("/api/live/motion", [](Live& board, const std::string& body) {
+      return json{{"command", board.move(parse_motion(body))}};
+    });
+    command("/api/live/channels", [](Live& board, const std::string& body) {
+      board.choose(parse_channels(body));
+      return json::object();
+    });
+    command("/api/live/trigger", [](Live& board, const std::string& body) {
+      return json{{"command", board.arm(parse_trigger_wish(body))}};
+    });
+    command("/api/live/trigger/cancel", [](Live& board, const std::string&) {
+      board.disarm();
+      return json::object();
+    });
+    command("/api/live/save", [](Live& board, const std::string& body) {
+      return json{{"records", board.save(parse_rows(body))}};
+    });
+    command("/api/live/parameters", [](Live& board, const std::string& body) {
+      return json{{"command", board.set(parse_parameters(body))}};
+    });
+    command("/api/live/parameters/file", [](Live& board, const std::string& body) {
+      return json{{"values", board.staged(parse_parameter_file(body))}};
+    });
+    command("/api/live/parameters/undo", [](Live& board, const std::string& body) {
+      board.undo(parse_owner(body));
+      return json::object();
+    });
+    command("/api/live/parameters/keep", [](Live& board, const std::string& body) {
+      board.keep(parse_owner(body));
+      return json::object();
+    });
+  }
+
+  Parts(int wanted_port, const LiveDevice& device) {
+    if (!device.device.empty()) live.emplace(folder, device);
     http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     // One request for each connection, so that the unread rest of a refused request is not parsed as another.
     http.set_keep_alive_max_count(1);
@@ -313,6 +398,7 @@ struct Server::Parts {
     http.set_pre_routing_handler([this](const Query& request, Response& response) { return guard(request, response); });
     add_page();
     add_routes();
+    add_board_routes();
     const bool is_bound = wanted_port > 0 && http.bind_to_port("127.0.0.1", wanted_port);
     port = is_bound ? wanted_port : wanted_port > 0 ? -1 : http.bind_to_any_port("127.0.0.1");
     if (port <= 0)
@@ -323,7 +409,7 @@ struct Server::Parts {
   }
 };
 
-Server::Server(int port) : parts_(std::make_unique<Parts>(port)) {}
+Server::Server(int port, const LiveDevice& device) : parts_(std::make_unique<Parts>(port, device)) {}
 Server::~Server() = default;
 
 std::string Server::url() const { return parts_->access->url(); }

@@ -7,12 +7,14 @@ import { firstLook, mostProbable } from "./look.js";
 import { plots, save } from "./plot_files.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
-const kCoordinates = ["position", "speed", "acceleration", "current", "time", "travel_since_reversal", "rest"], kUsualMap = ["position", "speed"];
+const kCoordinates = ["position", "speed", "acceleration", "current", "time", "travel_since_reversal", "rest"], kPlotCoordinates = ["position", "phase", ...kCoordinates.slice(1), "temperature"], kUsualMap = ["position", "speed"];
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
 let set = "all";
 let asked = 0;
-/** Options of the comparison, as those of the command: { traces, stretch, period_mm, map }. */
+/** Options of the comparison, as those of the command: { traces, stretch, period_mm, map, plot }. */
 let focus = {};
+/** Whether the plot of chosen axes is to be shown next. */
+let toChosen = false;
 
 function recordsOf(name) {
   return name === "all" ? [...recordsAs("train"), ...recordsAs("judge")] : recordsAs(name);
@@ -27,19 +29,20 @@ function setButtons(again) {
  * @param {HTMLElement} place
  * @param {string[]} models
  * @param {string[]} records
- * @param {{focus?: any, onZoom?: (...words: any[]) => void}} [options]
+ * @param {{focus?: any, onZoom?: (...words: any[]) => void, moreTools?: (figure: HTMLElement, plot: any) => HTMLElement[]}} [options]
  */
 export async function showComparison(place, models, records, options = {}) {
   const told = await post("/api/compare", { do: "compare", models, records, accept: choice.accepted, ...options.focus });
-  return { told, show: () => drawComparison(place, told, options.onZoom) };
+  return { told, show: () => drawComparison(place, told, options.onZoom, options.moreTools) };
 }
 
 /** Draws a received comparison. Replaces the previous content only now, so that the page keeps its scroll position.
  * @param {HTMLElement} place
  * @param {any} told
  * @param {(...words: any[]) => void} [onZoom]
+ * @param {(figure: HTMLElement, plot: any) => HTMLElement[]} [moreTools]
  */
-export function drawComparison(place, told, onZoom) {
+export function drawComparison(place, told, onZoom, moreTools) {
   place.style.minHeight = place.offsetHeight + "px";
   forgetPlots(place);
   place.replaceChildren();
@@ -49,7 +52,7 @@ export function drawComparison(place, told, onZoom) {
   place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
   const links = el("div");
   place.append(links);
-  const sections = sectionLinks([showBlocks(place, parts, () => true, onZoom)]);
+  const sections = sectionLinks([showBlocks(place, parts, () => true, onZoom, moreTools)]);
   sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
   links.replaceWith(sections);
   place.style.minHeight = "";
@@ -74,9 +77,15 @@ function focusTools(records, traces, again) {
   });
   const axis = (k, name) => el("select", { "aria-label": name, onchange: (event) => look({ map: (focus.map || kUsualMap).map((one, index) => (index === k ? event.target.value : one)) }) },
     ...kCoordinates.map((one) => el("option", { value: one, selected: (focus.map || kUsualMap)[k] === one }, one.replaceAll("_", " "))));
+  const chosen = (k, name, words) => el("select", { "aria-label": name, onchange: (event) => {
+    const plot = (focus.plot || ["", "error"]).map((one, index) => (index === k ? event.target.value : one));
+    toChosen = true;
+    look({ plot: plot[0] ? plot : undefined });
+  } }, ...words.map((one) => el("option", { value: one, selected: (focus.plot || ["", "error"])[k] === one }, one.replaceAll("_", " ") || "…")));
   const lit = focus.stretch ? el("button", { type: "button", id: "unlight", onclick: () => look({ stretch: undefined }) }, "Lit: " + focus.stretch.map(short).join(" to ") + " s ✕") : null;
   const whole = latestCut() ? el("button", { type: "button", id: "take-back", onclick: takeBack }, "Take back: " + latestCut()?.name + " as a whole") : null;
-  return el("div", { className: "row focus" }, el("label", {}, "Traces of ", choose), el("label", {}, "Fold by ", period, " mm"), el("span", {}, "Map over ", axis(0, "Map across"), " and ", axis(1, "Map up")), lit, whole);
+  return el("div", { className: "row focus" }, el("label", {}, "Traces of ", choose), el("label", {}, "Fold by ", period, " mm"), el("span", {}, "Map over ", axis(0, "Map across"), " and ", axis(1, "Map up")),
+    el("span", {}, "Plot ", chosen(1, "Plotted", ["error", ...kPlotCoordinates]), " against ", chosen(0, "Plotted against", ["", ...kPlotCoordinates])), lit, whole);
 }
 
 async function leaveOut(record, stretch) {
@@ -112,13 +121,39 @@ function zoomTools(traces, again) {
   };
 }
 
+/** Coordinates by the labels of their axes. */
+const kLabels = { "position": "position", "position in the period": "phase", "speed": "speed", "acceleration": "acceleration", "command": "current", "time since start": "time", "travel since the reversal": "travel_since_reversal", "rest before the motion": "rest", "temperature": "temperature" };
+
+/** A button on residual plots: the effects whose own part has that shape. */
+function likeTools(records) {
+  return (figure, plot) => {
+    const over = kLabels[plot.xLabel?.split(" [")[0]];
+    if (!over || !plot.label?.startsWith("missing")) return [];
+    const ask = async (event) => {
+      event.target.disabled = true;
+      figure.querySelector(".alike")?.remove();
+      try {
+        const [told, catalogue] = await Promise.all([post("/api/like", { do: "compare", models: [choice.model], records, accept: choice.accepted, ...focus, like: over }), effects()]);
+        const names = told.document.effects.map((one) => el("li", {}, el("a", { href: "#gallery/" + one.kind }, catalogue.find((info) => info.kind === one.kind)?.title || one.kind), " " + one.likeness.toFixed(2)));
+        const best = told.document.effects[0]?.likeness || 0;
+        figure.append(el("div", { className: "alike" }, el("p", { className: "soft" }, (best < 0.6 ? "No known effect comes close; the nearest" : "This residual has the shape of") + " (correlation with the effect's own part on these records):"), el("ol", {}, ...names), commandLine(told.command)));
+      } catch (error) {
+        notice(error.message);
+      } finally {
+        event.target.disabled = false;
+      }
+    };
+    return [el("button", { type: "button", title: "Effects whose own part has this shape", onclick: ask }, "looks like…")];
+  };
+}
+
 /** @param {Element} place */
 export async function showCompare(place) {
   const again = () => showCompare(place);
   const mine = ++asked;
   if (!recordsOf(set).length) set = "all";
   const records = recordsOf(set);
-  if (!records.includes(focus.traces)) focus = { period_mm: focus.period_mm, map: focus.map };
+  if (!records.includes(focus.traces)) focus = { period_mm: focus.period_mm, map: focus.map, plot: focus.plot };
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
@@ -127,7 +162,7 @@ export async function showCompare(place) {
   }
   place.classList.add("waiting");
   if (!place.querySelector(".blocks")) place.replaceChildren(head, el("p", { className: "soft" }, "Predicting…"));
-  const body = el("div"), options = { focus };
+  const body = el("div"), options = { focus, moreTools: likeTools(records) };
   try {
     const { told, show } = await showComparison(body, [choice.model, ...choice.beside], records, options);
     if (mine !== asked || !place.isConnected) return;
@@ -138,6 +173,9 @@ export async function showCompare(place) {
     head.append(el("a", { className: "button primary", href: "#effects/find" }, "Find the missing effect"));
     show();
     window.scrollTo(0, scrolled);
+    // The plot of chosen axes is the first of its section.
+    if (toChosen && focus.plot) [...body.querySelectorAll("h2")].find((one) => one.textContent.startsWith("What is missing"))?.scrollIntoView({ behavior: "smooth" });
+    toChosen = false;
     showFirstLook(head).catch((error) => notice(error.message));
   } catch (error) {
     if (mine !== asked) return;

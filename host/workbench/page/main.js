@@ -1,22 +1,26 @@
 // The page: selects the view by its address, handles keys, and redraws after changes.
+import { lookAtBoard, stream } from "./board.js";
 import { acceptDrops, loadFolder, onChoice } from "./choice.js";
 import { showCompare } from "./compare.js";
+import { stopButton } from "./command.js";
 import { el, errorBox } from "./elements.js";
 import { follow, keys, showEffects } from "./effects.js";
 import { showGallery } from "./gallery.js";
+import { leaveLive, liveKey, showLive } from "./live.js";
 import { showOpening } from "./opening.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
 import { continueTheOne, stopsPlace, watchStops } from "./stops.js";
 
 /** @type {[string, string, (place: Element, detail?: string) => any][]} */
-const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs]];
+const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs], ["live", "Live", showLive]];
 const content = el("div", { id: "content" }), progress = el("div", { id: "progress" });
 
 const address = () => location.hash.slice(1).split("/").map(decodeURIComponent);
 const isShown = (name) => (address()[0] || "compare") === name;
 
 function links() {
+  document.body.classList.toggle("live", isShown("live"));
   document.getElementById("views").replaceChildren(...kViews.map(([name, text], index) =>
     el("a", { href: "#" + name, title: "Key " + (index + 1), ...(isShown(name) ? { "aria-current": "page" } : {}) }, text)));
 }
@@ -34,6 +38,7 @@ async function show() {
 }
 
 function goTo() {
+  leaveLive();
   forgetPlots();
   content.replaceChildren();
   show();
@@ -47,13 +52,14 @@ function pressed(event) {
   if (view && !isShown(view[0])) location.hash = view[0];
   else if (view) return;
   else if (isShown("effects")) keys[event.key]?.();
+  else if (isShown("live")) liveKey(event.key);
 }
 
 async function start() {
   if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
   document.getElementById("view").replaceChildren(stopsPlace, progress, content);
   acceptDrops();
-  onChoice(() => !isShown("jobs") && !isShown("open") && show());
+  onChoice(() => !["jobs", "open", "live"].some(isShown) && show());
   onJobs(async (ended) => {
     progress.replaceChildren(...progressBars());
     await follow(ended);
@@ -64,6 +70,10 @@ async function start() {
   document.addEventListener("keydown", pressed);
   watchStops();
   try {
+    if ((await lookAtBoard()).device) {
+      document.querySelector("header.bar").append(stopButton());
+      stream(0, 0, () => {});
+    }
     await loadFolder();
     await lookAtJobs();
     await show();

@@ -1,5 +1,6 @@
-// Saves a figure: its numbers as CSV, its picture as PNG.
+// Saves a figure: its numbers as CSV, its picture as PNG or SVG.
 import { el } from "./elements.js";
+import { svgOf } from "./plot_svg.js";
 
 /** Functions of report.js, which is a separate script.
  * @returns {{draw: Function, unpack: (packed: any) => Float64Array}}
@@ -79,7 +80,7 @@ export function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Buttons for CSV and PNG.
+/** Buttons for CSV, PNG and SVG.
  * @param {HTMLElement} figure
  * @param {any} plot
  */
@@ -88,5 +89,6 @@ export function fileTools(figure, plot) {
   const name = title.replace(/[^\w.-]+/g, "-").toLowerCase();
   return el("div", { className: "tools" },
     el("button", { type: "button", "aria-label": "Numbers of “" + title + "” as CSV", onclick: () => save(name + ".csv", new Blob([csvOf(plot)], { type: "text/csv" })) }, "CSV"),
-    el("button", { type: "button", "aria-label": "“" + title + "” as PNG", onclick: () => pictureOf(figure).toBlob((blob) => save(name + ".png", blob)) }, "PNG"));
+    el("button", { type: "button", "aria-label": "“" + title + "” as PNG", onclick: () => pictureOf(figure).toBlob((blob) => save(name + ".png", blob)) }, "PNG"),
+    el("button", { type: "button", "aria-label": "“" + title + "” as SVG", onclick: () => save(name + ".svg", new Blob([svgOf(figure, plot)], { type: "image/svg+xml" })) }, "SVG"));
 }

@@ -44,8 +44,9 @@ export function showPlot(frame, plot) {
  * @param {ReportParts} parts
  * @param {(block: Element) => boolean} [wanted]
  * @param {(plot: any, canvas: Element, from: number, to: number) => void} [onZoom]
+ * @param {(figure: HTMLElement, plot: any) => HTMLElement[]} [moreTools] further buttons of a figure
  */
-export function showBlocks(place, parts, wanted = () => true, onZoom) {
+export function showBlocks(place, parts, wanted = () => true, onZoom, moreTools = () => []) {
   const frames = [], plots = [];
   const box = document.createElement("div");
   box.className = "blocks";
@@ -61,7 +62,7 @@ export function showBlocks(place, parts, wanted = () => true, onZoom) {
     frame.closest("figure").prepend(fileTools(frame.closest("figure"), plots.at(-1)));
   }
   drawn.push({ box, forget: plotScript().draw(plots, frames, onZoom) });
-  frames.forEach((frame, k) => frame.closest("figure").querySelector(".tools").prepend(...axisTools(frame, plots[k])));
+  frames.forEach((frame, k) => frame.closest("figure").querySelector(".tools").prepend(...moreTools(frame.closest("figure"), plots[k]), ...axisTools(frame, plots[k])));
   return box;
 }
 

@@ -71,5 +71,24 @@ TEST(ResidualMaps, TellPositionAndSpeedApart) {
   EXPECT_NE(report.html().find("\"kind\":\"map\""), std::string::npos);
 }
 
+// A chosen plot is the same curve as the fixed one over that coordinate; what cannot be drawn is said.
+TEST(ChosenPlot, DrawsAnyQuantityOverAnyOther) {
+  const auto plots = [](const std::pair<std::string, std::string>& names, double period) {
+    const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
+    Report report("test");
+    add_chosen_plot(report, {&view, 1}, names, sim::DriveKind::rotary, period);
+    return report.html();
+  };
+  const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
+  Report fixed("test");
+  add_residual_plot(fixed, coordinate_of("position", sim::DriveKind::rotary), "Missing torque against position",
+                    {"missing torque", "Nm"}, {&view, 1}, &ResidualView::force, Layout::overlaid);
+  EXPECT_EQ(plots({"position", "error"}, 0.0), fixed.html());
+  EXPECT_NE(plots({"position", "speed"}, 0.0).find("Speed against position"), std::string::npos);
+  EXPECT_NE(plots({"phase", "error"}, 0.0).find("not drawn"), std::string::npos);
+  EXPECT_EQ(plots({"phase", "error"}, kPeriod_mm).find("not drawn"), std::string::npos);
+  EXPECT_NE(plots({"temperature", "error"}, 0.0).find("not drawn"), std::string::npos) << "no record has one";
+}
+
 }  // namespace
 }  // namespace host

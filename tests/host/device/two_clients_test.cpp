@@ -1,39 +1,15 @@
 // Two programs at the socket of one simulated board.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <thread>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
-#include "host/identify/paper_drives.hpp"
-#include "host/link/socket_link.hpp"
-#include "host/simulated_board/socket_board.hpp"
 #include "tests/firmware/app/paper_values.hpp"
-#include "tests/host/temporary_folder.hpp"
+#include "tests/host/board_at_a_socket.hpp"
 
 namespace {
-
-class BoardAtASocket {
- public:
-  BoardAtASocket() {
-    thread_ = std::thread([this] { host::serve_simulated_device(device_, listener_, stop_); });
-  }
-  ~BoardAtASocket() {
-    stop_ = true;
-    thread_.join();
-  }
-  host::BoardClient client() const { return host::BoardClient(host::connect_to_socket(path_)); }
-
- private:
-  TemporaryFolder folder_;
-  std::string path_ = folder_.path("board.socket");
-  host::SimulatedDevice device_{{{{*host::paper_drive("x")}, {*host::paper_drive("y")}}, {}, 1}};
-  host::OwnedDescriptor listener_ = host::listen_at_socket(path_);
-  std::atomic<bool> stop_ = false;
-  std::thread thread_;
-};
 
 firmware::ParameterValues values_with_timeout(double timeout_s) {
   firmware::ParameterValues values = firmware_test::paper_values();

@@ -12,6 +12,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 from served_page import PATIENCE_S, PROGRAM, ServedPage  # ends here without a browser
 from selenium.webdriver.common.action_chains import ActionChains
@@ -254,6 +255,30 @@ class Workbench(ServedPage, unittest.TestCase):
         browser.find_element(By.CSS_SELECTOR, "[aria-label='Map up'] option[value=acceleration]").click()
         WebDriverWait(browser, PATIENCE_S).until(lambda _: "Position and acceleration" in self.texts("#content figcaption strong"))
         self.keep("axes")
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Plotted against'] option[value=acceleration]").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "Missing torque against acceleration" in self.texts("#content figcaption strong"))
+        self.assertIn("--plot acceleration,error", " ".join(self.texts(".command code")))
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Plotted'] option[value=speed]").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "Speed against acceleration" in self.texts("#content figcaption strong"))
+        self.keep("chosen-plot")
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Plotted against'] option[value=temperature]").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "not drawn" in " ".join(self.texts("#content .facts, #content dl, #content .blocks")))
+        downloads = self.folder / "downloads"
+        browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(downloads)})
+        browser.execute_script("[...arguments[0].querySelectorAll('.tools button')].find((one) => one.textContent === 'SVG').click()", browser.execute_script(figure, "Against speed"))
+        WebDriverWait(browser, 20).until(lambda _: list(downloads.glob("*.svg")))
+        svg = ElementTree.parse(next(downloads.glob("*.svg"))).getroot()
+        names = [element.tag.rpartition("}")[2] for element in svg.iter()]
+        self.assertGreaterEqual(names.count("path"), 5, "curves of both directions, their bands, and the axes")
+        self.assertGreater(names.count("text"), 10)
+        if folder := os.environ.get("AXIS_SCREENSHOTS"):
+            shutil.copy(next(downloads.glob("*.svg")), f"{folder}/figure.svg")
+        period = browser.execute_script("return [...document.querySelectorAll('#content figure')].find((one) => one.querySelector('strong')?.textContent.startsWith('Within one period'))")
+        next(button for button in period.find_elements(By.CSS_SELECTOR, ".tools button") if button.text == "looks like…").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: self.texts(".alike li"))
+        self.assertIn("Cogging", self.texts(".alike li")[0])
+        self.assertIn("--like phase", " ".join(self.texts(".alike .command code")))
+        self.keep("looks-like")
         self.click("#swap")
         self.until("[aria-label='Role of validate.csv'] option[value=train]:checked")
         self.until("[aria-label='Role of train-jog.csv'] option[value=judge]:checked")

@@ -61,6 +61,8 @@ TEST(Request, WhatIsNoRequestIsRefusedWithTheFieldsName) {
       {R"({"do":"add","model":"m.toml","train":["r.csv"]})", "kind"},
       {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"; rm"})", "kind"},
       {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"map":["speed"]})", "map"},
+      {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"plot":["error","speed"]})", "plot"},
+      {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"plot":["speed"]})", "plot"},
       {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"map":["speed","colour"]})", "map"},
       {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"cogging","output":"x"})", "output"}};
   for (const auto& [text, field] : wrong) {

@@ -33,7 +33,8 @@ class WorkingFolder {
 
 class ServedFolder : public WorkingFolder {
  public:
-  ServedFolder() : server(0), thread_([this] { server.run(); }) {
+  explicit ServedFolder(const host::workbench::LiveDevice& device = {})
+      : server(0, device), thread_([this] { server.run(); }) {
     const std::string url = server.url();
     token = url.substr(url.find("token=") + 6);
     own = {{"Cookie", "axistool-" + std::to_string(server.port()) + "=" + token}};

@@ -29,9 +29,9 @@ PATIENCE_S = 240
 class ServedPage:
     """Starts both; end() checks that the program ends in order."""
 
-    def open(self, folder: Path) -> None:
+    def open(self, folder: Path, *options: str) -> None:
         self.folder = folder
-        self.program = subprocess.Popen([PROGRAM, "serve", str(self.folder), "--no-browser"], stdout=subprocess.PIPE, text=True)
+        self.program = subprocess.Popen([PROGRAM, "serve", str(self.folder), "--no-browser", *options], stdout=subprocess.PIPE, text=True)
         self.url = self.program.stdout.readline().strip()
         self.profile = tempfile.mkdtemp(dir=self.folder.parent, prefix="axis-profile-")
         options = webdriver.ChromeOptions()

@@ -3,23 +3,19 @@
 on by the page's key and by its button; nothing else of the page, and no notice of a program that was killed, moves an
 axis."""
 
-import json
 import os
 import pty
-import shutil
 import signal
-import subprocess
-import tempfile
 import time
 import unittest
 from pathlib import Path
 
-from served_page import PATIENCE_S, PROGRAM, ServedPage  # ends here without a browser
+from served_page import PROGRAM, ServedPage  # ends here without a browser
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
+from simulated_board import SimulatedBoard
 
-MODEL = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases/none/case-00/model.toml"
 PART = "G21 G90\nG1 F1200 X5\nM0\nX10\nM1\nX15\nM2\n"
 
 
@@ -43,32 +39,15 @@ class Operator:
         return os.waitstatus_to_exitcode(status) if ended else None
 
 
-class WaitingProgram(ServedPage, unittest.TestCase):
+class WaitingProgram(ServedPage, SimulatedBoard):
     def setUp(self) -> None:
-        self.place = Path(tempfile.mkdtemp(prefix="axis-waits-"))
-        self.addCleanup(shutil.rmtree, self.place, True)
-        self.own = self.place / "own"
-        self.own.mkdir(0o700)
-        os.environ["XDG_RUNTIME_DIR"] = str(self.own)
+        self.start_board(1, 5)  # a long time-out, so that a loaded computer does not look like a lost host
         self.part = self.place / "part.ngc"
         self.part.write_text(PART)
-        self.board = subprocess.Popen([PROGRAM, "sim", "--axes", "1", "--forget"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(self.board.wait, 30)
-        self.addCleanup(self.board.terminate)
-        WebDriverWait(None, 30).until(lambda _: (self.own / "axis-sim.socket").exists())
-        self.tool("design", str(MODEL), "-o", str(self.place / "x.toml"))
-        # A long time-out, so that a loaded computer does not look like a lost host.
-        self.tool("set-params", str(self.place / "x.toml"), "host.timeout=5", "--device", "sim")
         served = self.place / "served"
         served.mkdir()
         self.open(served)
         self.addCleanup(self.close)
-
-    def tool(self, *words: str) -> str:
-        return subprocess.run([PROGRAM, *words], check=True, stdout=subprocess.PIPE, text=True).stdout
-
-    def at_mm(self) -> float:
-        return json.loads(self.tool("status", "--device", "sim", "--json", "-"))["axes"][0]["position"]
 
     def waits_in(self, line: int) -> None:
         WebDriverWait(self.browser, 60, 0.1).until(lambda _: any(f"in line {line}." in text for text in self.texts("#stops h2")), f"line {line}")
