@@ -9,6 +9,7 @@
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/pattern_search.hpp"
+#include "host/diagnose/verdict.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
@@ -330,17 +331,12 @@ std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::D
 
 /// Keeps the first of several starts that begin with the same values.
 void drop_same(std::vector<Start>& starts) {
-  constexpr double kSame = 0.01;
-  const auto is_same = [](const Start& one, const Start& other) {
-    const sim::EffectEntry &a = one.model.effects.back(), &b = other.model.effects.back();
-    return a.kind == b.kind && std::ranges::all_of(a.parameters, [&](const auto& parameter) {
-             const auto& [id, value] = parameter;
-             return b.has(id) && std::abs(b.at(id) - value) <= kSame * std::abs(value);
-           });
-  };
   std::vector<Start> kept;
   for (Start& start : starts)
-    if (std::ranges::none_of(kept, [&](const Start& other) { return is_same(start, other); }))
+    if (std::ranges::none_of(kept, [&](const Start& other) {
+          const sim::EffectEntry &a = start.model.effects.back(), &b = other.model.effects.back();
+          return a.kind == b.kind && a.parameters.size() == b.parameters.size() && !has_moved(a, b);
+        }))
       kept.push_back(std::move(start));
   starts = std::move(kept);
 }

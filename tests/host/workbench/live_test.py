@@ -57,9 +57,16 @@ class Live(ServedPage, SimulatedBoard):
         WebDriverWait(None, patience_s, 0.05).until(lambda _: holds(), what)
 
     def take_and_enable(self) -> None:
-        self.click("#claim:enabled")
-        self.click("#enable-x:enabled")
-        self.until("#jog-x-plus:enabled")
+        """On a busy computer a page may be silent for half a second, and so loses the command: then it takes it again."""
+
+        def is_enabled() -> bool:
+            for button in ("#claim:enabled", "#enable-x:enabled"):
+                for shown in self.browser.find_elements(By.CSS_SELECTOR, button):
+                    if shown.is_displayed():
+                        self.browser.execute_script("arguments[0].click()", shown)
+            return bool(self.browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"))
+
+        self.soon(is_enabled, "the page commands, and the axis is enabled")
 
     def set_speed(self, value: str) -> None:
         speed = self.until("[aria-label='Jog speed of x']")
