@@ -44,6 +44,17 @@ double taken_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
                   taken(diagnosis.before_level.validate, candidate.level.validate));
 }
 
+/// Whether an effect is present together with certain ones with a probability of at least kClaimed, and takes enough of
+/// what they leave.
+bool is_certain_beside(Kinds certain, const std::string& kind, const Diagnosis& diagnosis) {
+  if (holds(certain, kind)) return false;
+  const JudgedCandidate* without = candidate_of(diagnosis, certain);
+  certain.push_back(kind);
+  const JudgedCandidate* with = candidate_of(diagnosis, certain);
+  return with != nullptr && without != nullptr && explained_beyond(*without, *with) >= kWorthNaming &&
+         probability_of(diagnosis, certain) >= kClaimed;
+}
+
 /// The smallest set of most probable effects such that one of them is present beside `certain` with a probability of at
 /// least kClaimed. From a set of more than two, effects that are improbable by themselves are left out. Empty if more
 /// than kLargestGroup remain, or if one of them explains too little.
@@ -148,13 +159,17 @@ void settle_status(Diagnosis& diagnosis) {
   const bool hardly_helps = whole != nullptr && taken_by(*whole, diagnosis) < kWorthNaming;
   // All named effects are certain together; other effects of the best candidate are at most part of a group of rivals.
   Kinds together;
-  if (verdict.status == Status::missing && !hardly_helps)
+  if (verdict.status == Status::missing && !hardly_helps) {
     for (const std::string& kind : verdict.effects) {
       together.push_back(kind);
       if (probability_of(diagnosis, together) < kClaimed) together.pop_back();
     }
+    for (const std::string& kind :
+         std::ranges::max_element(diagnosis.candidates, {}, &JudgedCandidate::probability)->kinds)
+      if (!together.empty() && is_certain_beside(together, kind, diagnosis)) together.push_back(kind);
+  }
   if (!together.empty()) {
-    const bool lost_some = together.size() < verdict.effects.size();
+    const bool lost_some = !holds_all(together, verdict.effects);
     verdict.effects = std::move(together);
     std::erase_if(verdict.alternatives, [&](const Kinds& group) {
       return group.size() > kLargestGroup && !holds(verdict.effects, group.front());

@@ -72,6 +72,18 @@ TEST(Certainty, WhatIsCertainStandsBesideAGroup) {
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
 }
 
+TEST(Certainty, AFurtherEffectIsNamedWhereItIsCertainAndTakesEnough) {
+  const auto named = [](double probability, double after) {
+    std::vector<JudgedCandidate> candidates{candidate({"cogging"}, 1.0 - probability, 4.0),
+                                            candidate({"cogging", "backlash"}, probability, after)};
+    for (JudgedCandidate& one : candidates) one.level = {one.after, one.after};
+    return claimed({"cogging"}, candidates).verdict.effects;
+  };
+  EXPECT_THAT(named(0.97, 3.0), ElementsAre("cogging", "backlash"));
+  EXPECT_THAT(named(0.9, 3.0), ElementsAre("cogging"));
+  EXPECT_THAT(named(0.97, 3.95), ElementsAre("cogging")) << "certain is not important";
+}
+
 TEST(Certainty, APairIsNamedWhereItHoldsTheClaim) {
   const std::vector<JudgedCandidate> surely{candidate({"cogging"}, 0.02), candidate({"cogging", "backlash"}, 0.96)};
   EXPECT_THAT(claimed({"cogging", "backlash"}, surely).verdict.effects, ElementsAre("cogging", "backlash"));
