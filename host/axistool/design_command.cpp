@@ -12,14 +12,13 @@
 #include "host/axes/machine_design.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/identify/design_json.hpp"
+#include "host/hil/designed_loop.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/known_by_current.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
 #include "host/parameters/design_file.hpp"
 #include "host/parameters/drive_limits.hpp"
-#include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/response/loop_design.hpp"
 #include "host/response/response_report.hpp"
@@ -76,13 +75,6 @@ host::LoopAim aim_of(const DesignArguments& arguments) {
                         "--margin, --bandwidth and --notch auto need a measured response: give --response with the "
                         "JSON of `axistool bode`, or with records");
   return aim;
-}
-
-host::AxisResponse measured_response(const std::vector<std::string>& files) {
-  if (files.size() == 1 && files.front().ends_with(".json")) return host::read_response(files.front());
-  std::vector<host::Record> records;
-  for (const std::string& path : files) records.push_back(host::read_record(path));
-  return host::analyse_response(records, nullptr);
 }
 
 std::string filter_text(const host::ControlFilterChoice& filters) {
@@ -224,7 +216,7 @@ void run_machine(const DesignArguments& arguments) {
   for (std::size_t i = 0; i < arguments.models.size(); ++i) {
     tasks.push_back({model_of(arguments.models[i], arguments), {}});
     if (arguments.response.empty()) continue;
-    tasks.back().measured = measured_response({arguments.response[i]});
+    tasks.back().measured = host::response_of({arguments.response[i]}, tasks.back().model);
     if (!tasks.back().measured->fit)
       throw host::Failure(host::ExitCode::refused,
                           arguments.response[i] + ": too few measured frequencies for a design");
@@ -245,35 +237,15 @@ void run(const DesignArguments& arguments) {
   if (arguments.own) throw host::Failure(host::ExitCode::usage, "--own needs several axes: give a model of each");
   const sim::DriveDescription model = model_of(arguments.models.front(), arguments);
   const host::LoopAim aim = aim_of(arguments);
-  std::optional<host::LoopDesign> loop;
-  if (!arguments.response.empty())
-    loop = host::design_loop(model, arguments.options, aim, measured_response(arguments.response));
-  const host::AxisDesign design = loop ? loop->design : host::design_axis(model, arguments.options);
-  const host::ControlFilterChoice filters = loop ? loop->filters : aim.filters;
-  host::core_filters(filters, model.data.sample_period_s);  // in their ranges
-  if (loop && loop->after.margins && !loop->after.margins->is_stable)
-    throw host::Failure(host::ExitCode::refused,
-                        "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
-                        "finds the highest bandwidth with this modulus margin");
-  host::LimitWishes wishes = arguments.limits;
-  wishes.loop_Hz = design.used.bandwidth_Hz;
-  if (loop && loop->after.fit) wishes.measured_Hz = host::lowest_resonance_Hz(*loop->after.fit);
-  const host::DriveLimits limits = host::drive_limits(model, wishes);
+  std::optional<host::AxisResponse> response;
+  if (!arguments.response.empty()) response = host::response_of(arguments.response, model);
+  const host::DesignedLoop designed = host::designed_loop(model, arguments.options, aim, arguments.limits, response);
+  const auto& [design, filters, limits, loop] = designed;
   if (!arguments.output.empty()) {
     host::write_file_atomically(arguments.output, host::design_toml(model, design, filters, limits.written));
   }
-  if (!arguments.json.empty()) {
-    nlohmann::json document = host::design_json(design);
-    document["filters"] = host::filter_json(filters);
-    document["limits"] = host::drive_limits_json(limits);
-    if (loop) {
-      document["before"] = host::response_json(loop->before)["margins"];
-      document["after"] = host::response_json(loop->after)["margins"];
-    }
-    write_json(document, arguments.json);
-  }
-  if (loop && !arguments.report.empty())
-    host::response_report(loop->after, "axis " + model.name + ", designed", &loop->before).write(arguments.report);
+  if (!arguments.json.empty()) write_json(host::designed_loop_json(designed), arguments.json);
+  if (!arguments.report.empty()) host::designed_loop_report(model, designed, arguments.options).write(arguments.report);
   if (arguments.json == "-") return;
   print_table(model, design);
   print_limits(model, limits);
@@ -282,9 +254,10 @@ void run(const DesignArguments& arguments) {
   if (loop)
     fmt::print(
         "\n"
-        "On the measured response; before: --fc {:g} without filters, after: this design:\n"
+        "On the {} response; before: --fc {:g} without filters, after: this design:\n"
         "{}",
-        arguments.options.bandwidth_Hz, host::margins_text(loop->after, &loop->before, host::terminal_of(stdout)));
+        arguments.response.front() == host::kModelled ? "model's" : "measured", arguments.options.bandwidth_Hz,
+        host::margins_text(loop->after, &loop->before, host::terminal_of(stdout)));
   if (!arguments.output.empty()) fmt::print("\nboard parameters written to {}\n", arguments.output);
 }
 
@@ -322,7 +295,8 @@ void add_design(CLI::App& app) {
                       "design although this effect's values (inertia, viscous, coulomb, …) are physically impossible "
                       "or not determined by the records");
   add_input(*command, "--response", arguments->response,
-            "JSON of `bode` for this axis, or its records: the design is evaluated on it, and --margin, --bandwidth "
+            "JSON of `bode` for this axis, or its records, or the word model for what the model predicts: the design "
+            "is evaluated on it, and --margin, --bandwidth "
             "and --notch auto use it; with several models one file each, in the same order");
   command->add_option("--margin", arguments->margin, "raise --fc as far as this modulus margin allows (usually 0.5)")
       ->check(CLI::Range(0.05, 0.95));
@@ -345,7 +319,8 @@ void add_design(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--velocity", arguments->limits.top_speed_mm_s, "top speed of screw and guides, mm/s (250)")
       ->check(CLI::PositiveNumber);
-  add_output(*command, "--report", arguments->report, "with --response: HTML page of the loop before and after");
+  add_output(*command, "--report", arguments->report,
+             "HTML page: a predicted step and move; with --response also the loop before and after");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"

@@ -415,8 +415,9 @@
     const zoomed = () => show(Math.min(...lengths(chart.xAxisRange(), chart.yAxisRange())), chart.xAxisRange(), chart.yAxisRange());
     chart.updateOptions({ zoomCallback: () => (chart.isZoomed("x") ? zoomed() : whole()) });
     whole();
-    const resized = () => (chart.resize(), whole()); // dygraphs itself reacts only to the size of the window
-    new ResizeObserver(resized).observe(chart.graphDiv.parentElement);
+    // dygraphs itself reacts only to the size of the window; a destroyed chart has no graphDiv.
+    const observer = new ResizeObserver(() => (chart.graphDiv ? (chart.resize(), whole()) : observer.disconnect()));
+    observer.observe(chart.graphDiv.parentElement);
   }
 
   // Draws each plot into its frame; returns a function that removes the plots. `onZoom` may be absent.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,9 @@ namespace host {
 namespace {
 
 using nlohmann::json;
+
+/// By FrequencyResponse::Method.
+constexpr std::array kMethodNames{"periodic", "welch", "model"};
 
 json complex_json(const std::vector<std::complex<double>>& values, const std::vector<double>& half_width) {
   json re = json::array(), im = json::array(), sd = json::array();
@@ -152,7 +156,7 @@ nlohmann::json response_json(const AxisResponse& axis) {
   const FrequencyResponse& response = axis.response;
   json document = {
       {"format", "axis-response/1"},
-      {"method", response.method == FrequencyResponse::Method::periodic ? "periodic" : "welch"},
+      {"method", kMethodNames.at(static_cast<std::size_t>(response.method))},
       {"indirect", response.is_indirect},
       {"kind", response.kind == sim::DriveKind::rotary ? "rotary" : "linear"},
       {"sample_period_s", response.sample_period_s},

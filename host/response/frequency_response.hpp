@@ -32,7 +32,7 @@ struct DistortionLine {
 
 /// Lines are sorted by frequency.
 struct FrequencyResponse {
-  enum class Method { periodic, welch };
+  enum class Method { periodic, welch, model };  ///< model: predicted, not measured
 
   Method method = Method::periodic;
   bool is_indirect = false;  ///< relative to an excitation or a reference; otherwise to the command itself

@@ -116,8 +116,9 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
     const std::string name = channel == 0 ? "position" : "speed";
     std::vector<Curve> curves;
     if (before != nullptr) curves.push_back(plant_curve(before->response, channel, "before", SeriesRole::before));
-    curves.push_back(plant_curve(response, channel, "measured", SeriesRole::measured));
-    if (axis.fit) {
+    const bool is_measured = response.method != FrequencyResponse::Method::model;
+    curves.push_back(plant_curve(response, channel, is_measured ? "measured" : "model", SeriesRole::measured));
+    if (axis.fit && is_measured) {
       Curve fitted{"fit", SeriesRole::model, SeriesStyle::line, {}, {}, {}};
       const double low = response.lines.front().f_Hz, high = response.lines.back().f_Hz;
       for (int i = 0; i <= 300; ++i) {
@@ -186,7 +187,7 @@ ScatterSeries locus(const OpenLoop& loop, const std::string& name, SeriesRole ro
 
 void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* before) {
   const OpenLoop& loop = *axis.loop;
-  report.section("Loop", "The measured drive with the axis's own estimator and feedback, cut at the drive's input.");
+  report.section("Loop", "The drive with the axis's own estimator and feedback, cut at the drive's input.");
   std::vector<Curve> curves, sensitivities;
   const auto append = [&](const OpenLoop& one, const std::string& name, SeriesRole role) {
     curves.push_back({name, role, SeriesStyle::line, one.fine_f_Hz, one.fine_L, {}});
@@ -194,7 +195,8 @@ void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* befo
   };
   if (before != nullptr && before->loop) append(*before->loop, "before", SeriesRole::before);
   append(loop, before != nullptr ? "after" : "loop", SeriesRole::after);
-  curves.push_back({"measured lines", SeriesRole::measured, SeriesStyle::points, loop.f_Hz, loop.L, loop.half_width});
+  if (axis.response.method != FrequencyResponse::Method::model)
+    curves.push_back({"measured lines", SeriesRole::measured, SeriesStyle::points, loop.f_Hz, loop.L, loop.half_width});
   std::vector<ScatterSeries> magnitudes, phases, peaks;
   for (const Curve& curve : curves) {
     magnitudes.push_back(magnitude_of(curve));
@@ -226,8 +228,9 @@ void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* befo
 
 std::string with_interval(const std::optional<Interval95>& value, int digits = 3) {
   if (!value) return "–";
-  return fmt::format("{} ({} to {})", format_value(value->value, digits), format_value(value->ci95[0], digits),
-                     format_value(value->ci95[1], digits));
+  const std::string text = format_value(value->value, digits), low = format_value(value->ci95[0], digits),
+                    high = format_value(value->ci95[1], digits);
+  return low == high ? text : fmt::format("{} ({} to {})", text, low, high);  // a model has no interval
 }
 
 Table margins_table(const AxisResponse& axis, const AxisResponse* before) {
@@ -315,6 +318,11 @@ Report response_report(const AxisResponse& axis, const std::string& subtitle, co
   const FrequencyResponse& response = axis.response;
   const bool is_periodic = response.method == FrequencyResponse::Method::periodic;
   Facts facts;
+  if (response.method == FrequencyResponse::Method::model) {
+    facts.items = {{"method", "predicted by the model, not measured"}};
+    report.add(std::move(facts));
+    return report;
+  }
   facts.items = {{"method", is_periodic ? "odd random-phase multisine, robust method" : "Welch"},
                  {"against", response.is_indirect ? "the excitation (closed loop)" : "the command"},
                  {is_periodic ? "realisations" : "stretches",

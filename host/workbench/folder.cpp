@@ -25,11 +25,12 @@ bool is_inside(const fs::path& path, const fs::path& root) {
 
 /// The beginning of a file, which determines its kind: long enough to contain a model's effects, which follow its data
 /// sheet.
-std::string head_of(const fs::path& path) {
-  std::array<char, 8192> head{};
+std::string head_of(const fs::path& path, std::size_t size = 8192) {
+  std::string head(size, 0);
   std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), head.size());
-  return {head.data(), static_cast<std::size_t>(file.gcount())};
+  file.read(head.data(), static_cast<std::streamsize>(size));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 bool is_log(const std::string& extension) {
@@ -46,6 +47,9 @@ std::string kind_of(const fs::path& path) {
     if (head.find("axis-model/1") == std::string::npos) return "";
     return head.find("[[effect]]") == std::string::npos ? "sheet" : "model";
   }
+  constexpr std::size_t kResponseSize = 1 << 20;  // the format stands behind lists of numbers
+  if (extension == ".json")
+    return head_of(path, kResponseSize).find("axis-response/1") == std::string::npos ? "" : "response";
   if (!is_log(extension)) return "";
   if (extension != ".csv") return "log";
   const std::string head = head_of(path);

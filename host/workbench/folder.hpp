@@ -19,8 +19,8 @@ bool is_plain_name(std::string_view name);
 
 struct FolderFile {
   std::string name;
-  std::string kind;  ///< "model", "sheet" (a data sheet, without effects), "record", or "log" of a layout that
-                     ///< `axistool open` reads
+  std::string kind;  ///< "model", "sheet" (a data sheet, without effects), "record", "response" (JSON of `axistool
+                     ///< bode`), or "log" of a layout that `axistool open` reads
   std::size_t bytes = 0;
 };
 

@@ -16,6 +16,7 @@ AXIS_EMBED(axis_workbench_live, AXIS_PAGE_DIR "/live.js");
 AXIS_EMBED(axis_workbench_motion, AXIS_PAGE_DIR "/motion.js");
 AXIS_EMBED(axis_workbench_scope, AXIS_PAGE_DIR "/scope.js");
 AXIS_EMBED(axis_workbench_catalogue, AXIS_PAGE_DIR "/catalogue.js");
+AXIS_EMBED(axis_workbench_loop, AXIS_PAGE_DIR "/loop.js");
 AXIS_EMBED(axis_workbench_look, AXIS_PAGE_DIR "/look.js");
 AXIS_EMBED(axis_workbench_choice, AXIS_PAGE_DIR "/choice.js");
 AXIS_EMBED(axis_workbench_compare, AXIS_PAGE_DIR "/compare.js");
@@ -49,6 +50,7 @@ const std::vector<PageFile>& page_files() {
       {"motion.js", kScript, AXIS_PAGE_FILE(motion)},
       {"scope.js", kScript, AXIS_PAGE_FILE(scope)},
       {"catalogue.js", kScript, AXIS_PAGE_FILE(catalogue)},
+      {"loop.js", kScript, AXIS_PAGE_FILE(loop)},
       {"look.js", kScript, AXIS_PAGE_FILE(look)},
       {"choice.js", kScript, AXIS_PAGE_FILE(choice)},
       {"compare.js", kScript, AXIS_PAGE_FILE(compare)},

@@ -26,6 +26,7 @@
 #include "host/workbench/jobs.hpp"
 #include "host/workbench/live.hpp"
 #include "host/workbench/live_stream.hpp"
+#include "host/workbench/loop.hpp"
 #include "host/workbench/page_files.hpp"
 #include "host/workbench/request.hpp"
 #include "host/workbench/story.hpp"
@@ -116,7 +117,7 @@ struct Server::Parts {
   httplib::Server http;
   int port = 0;
   std::optional<Access> access;
-  std::mutex comparing, looking, drawing;
+  std::mutex comparing, looking, drawing, designing;
   std::map<std::string, nlohmann::json> pictures;  ///< pictures of the gallery, by kind
   std::atomic<bool> is_ending = false, has_ended = false;
 
@@ -283,6 +284,12 @@ struct Server::Parts {
       const std::lock_guard one_at_a_time(comparing);
       const CancelledBy scope(&is_ending);
       send(response, {{"document", look_alike(folder, request)}, {"command", command_line(request, {})}});
+    });
+    post("/api/loop", [this](const Query&, Response& response, const std::string& body) {
+      const LoopRequest request = parse_loop(body);
+      const std::lock_guard one_at_a_time(designing);
+      const CancelledBy scope(&is_ending);
+      send(response, design_of(folder, request));
     });
     post("/api/trial", [this](const Query&, Response& response, const std::string& body) {
       send_trial(parse_request(body), response);

@@ -7,6 +7,7 @@
 #include "host/exit_codes.hpp"
 #include "host/workbench/folder.hpp"
 #include "host/workbench/live_request.hpp"
+#include "host/workbench/loop.hpp"
 #include "host/workbench/request.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -49,6 +50,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     for (const std::string& one : parse_parameters(text).assignments)
       if (one.find('\n') != std::string::npos) std::abort();
+  } catch (const host::Failure&) {
+  }
+  try {
+    const LoopRequest loop = parse_loop(text);
+    if (!is_plain_name(loop.model) || loop_command(loop, "p.toml").find('\n') != std::string::npos) std::abort();
   } catch (const host::Failure&) {
   }
   try {

@@ -8,6 +8,16 @@ import { get, post } from "./exchange.js";
 const staged = new Map();
 let filter = "";
 
+/** Stages the values of a file of parameters; returns their number.
+ * @param {string} text
+ * @param {string} axis of the board
+ */
+export async function stageParameters(text, axis) {
+  const told = await post("/api/live/parameters/file", { text, name: "design", axis });
+  for (const [name, value] of Object.entries(told.values)) staged.set(name, value);
+  return Object.keys(told.values).length;
+}
+
 /** @param {(() => void)[]} leaving what to call when the view is left */
 export function showParameters(leaving) {
   /** @type {any[]} */

@@ -6,6 +6,7 @@ import { stopButton } from "./command.js";
 import { el, errorBox } from "./elements.js";
 import { follow, keys, showEffects } from "./effects.js";
 import { showGallery } from "./gallery.js";
+import { showLoop } from "./loop.js";
 import { leaveLive, liveKey, showLive } from "./live.js";
 import { showOpening } from "./opening.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
@@ -13,7 +14,7 @@ import { forgetPlots } from "./report_parts.js";
 import { continueTheOne, stopsPlace, watchStops } from "./stops.js";
 
 /** @type {[string, string, (place: Element, detail?: string) => any][]} */
-const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs], ["live", "Live", showLive]];
+const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs], ["live", "Live", showLive], ["loop", "Loop", showLoop]];
 const content = el("div", { id: "content" }), progress = el("div", { id: "progress" });
 
 const address = () => location.hash.slice(1).split("/").map(decodeURIComponent);

@@ -179,7 +179,7 @@ class Workbench(ServedPage, unittest.TestCase):
         for width, height, scheme, name in ((1440, 1000, "dark", "dark"), (400, 850, "light", "phone"), (3840, 2160, "light", "4k")):
             self.show_on(width, height)
             browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
-            for key, shown in (("1", "#content .focus ~ div .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1")):
+            for key, shown in (("1", "#content .focus ~ div .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1"), ("5", "#content .command"), ("6", "#content .loop ~ div .blocks canvas")):
                 browser.find_element(By.TAG_NAME, "body").send_keys(key)
                 self.until(shown)
                 time.sleep(0.3)
@@ -307,6 +307,34 @@ class Workbench(ServedPage, unittest.TestCase):
         self.until("#content .verdict")
         self.assertTrue((self.folder / "sheet-identified.toml").exists())
         self.keep("opened")
+        self.quiet()
+
+    def test_a_loop_is_designed_by_hand(self) -> None:
+        browser = self.browser
+        self.until("#content .verdict")
+        browser.find_element(By.TAG_NAME, "body").send_keys("6")
+        self.until("#content .loop ~ div .blocks canvas")
+        titles = " ".join(self.texts("#content figcaption strong"))
+        for title in ("Margins", "Step of", "Move over"):
+            self.assertIn(title, titles)
+
+        def error_um() -> float:
+            return float(next(text for text in self.texts("#content .facts dl > div") if "designed" in text).split("\n")[-1].split()[0])
+
+        slow = error_um()
+        began = time.monotonic()
+        browser.execute_script("const s = document.querySelector('.loop [data-name=fc]'); s.value = 60; s.dispatchEvent(new Event('input'));")
+        WebDriverWait(browser, PATIENCE_S, 0.02).until(lambda _: "--fc 60 " in " ".join(self.texts("#content .command code")))
+        print(f"bandwidth moved: figures follow after {time.monotonic() - began:.2f} s", file=sys.stderr)
+        self.assertLess(error_um(), slow, "the faster loop follows better")
+        self.keep("loop")
+        self.keep_on_phone("phone-loop")
+        self.click("#fastest")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "--margin 0.5" in " ".join(self.texts("#content .command code")))
+        self.assertNotEqual(browser.execute_script("return document.querySelector('.loop [data-name=fc]').value"), "60", "the slider shows what was found")
+        self.assertFalse((self.folder / "model-params.toml").exists())
+        self.click("#write-parameters")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: (self.folder / "model-params.toml").exists())
         self.quiet()
 
     def test_file_names_are_text(self) -> None:

@@ -118,6 +118,22 @@ class Live(ServedPage, SimulatedBoard):
         self.keep("live")
         self.quiet()
 
+    def test_lost_rows_are_counted_and_stay_a_gap(self) -> None:
+        browser = self.browser
+        self.soon(lambda: (browser.execute_async_script(RECEIVED) or {}).get("taken", 0) > 1000, "rows arrive")
+        self.program.send_signal(signal.SIGSTOP)  # longer than what board and socket keep
+        time.sleep(5)
+        self.program.send_signal(signal.SIGCONT)
+        self.soon(lambda: browser.execute_async_script(RECEIVED)["missing"] > 100, "lost rows are missing on the page")
+        time.sleep(1)
+        told = browser.execute_async_script(RECEIVED)
+        self.assertIn(f" {told['missing']} lost", self.texts("#counts")[0], "the page misses as many as the server lost")
+        self.assertEqual(told["twice"], 0)
+        self.keep("live-lost")
+        self.click("#save-shown")
+        self.until("#open-saved")
+        self.assertIn(f"lost_rows: {told['missing']}", (self.folder / "live-x.csv").read_text()[:500])
+
     def test_a_held_button_moves_and_the_space_bar_stops(self) -> None:
         self.take_and_enable()
         self.set_speed("5")
