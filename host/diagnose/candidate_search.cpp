@@ -31,19 +31,14 @@ constexpr double kClose = 1.5;
 /// Two starts of one effect are both fitted further while the ratio of their errors is below this.
 constexpr double kOpenRace = 1.25;
 
-/// FitOptions::kept_slopes_until of the fits that rank starts.
-constexpr double kKeptSlopes = 0.5;
 /// A drive with one integrator step per sample needs at most a third of these budgets. So a resonance of 200 Hz at 1
 /// kHz (five steps per sample) still gets as many passes as most fits take. All fits of a search together take at most
 /// some 400 million steps.
-constexpr FitOptions kFirstLook{
-    .most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6, .kept_slopes_until = kKeptSlopes};
-constexpr FitOptions kSeriousFit{
-    .most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6, .kept_slopes_until = kKeptSlopes};
+constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
+constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
 /// Budget for each start near a finalist: enough to find the deepest local minimum.
-constexpr FitOptions kTryout{
-    .most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6, .kept_slopes_until = kKeptSlopes};
+constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
 constexpr std::size_t kBestOfTryout = 4;
 constexpr int kFirstSteps = 3;  // of each start, before the better ones are fitted further
 /// If the base itself needs many small steps, so does every candidate. Each candidate then gets this share of its

@@ -31,13 +31,8 @@ std::vector<double> difference_steps(const sim::DriveDescription& model) {
 
 class WindowResiduals : public ceres::CostFunction {
  public:
-  WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set,
-                  double kept_slopes_until = 1.0)
-      : model_(model),
-        vector_(vector),
-        set_(set),
-        rows_(static_cast<Eigen::Index>(residual_count(set))),
-        kept_until_(kept_slopes_until) {
+  WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
+      : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
     // A prior has the weight of one further measurement with this set's error.
     const auto windows = static_cast<double>(std::max<std::size_t>(1, set.used_windows()));
     belief_weight_ = std::sqrt(std::max(1.0, set.common_square / kCommonSquare) / windows);
@@ -58,17 +53,9 @@ class WindowResiduals : public ceres::CostFunction {
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(jacobians[0], rows_,
                                                                                                 columns);
     Eigen::VectorXd there(rows_);
-    const double square = here.squaredNorm();
-    const bool keeps = kept_until_ < 1.0;
-    const bool has_kept = kept_.size() > 0 && square > kept_until_ * kept_square_;
-    if (keeps && !has_kept) kept_square_ = square;
     for (Eigen::Index column = 0; column < columns; ++column) {
       if (is_cancelled()) return false;
       const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
-      if (has_kept && free.effect + 1 < model_.effects.size()) {
-        jacobian.col(column) = kept_.col(column);
-        continue;
-      }
       // A step down from the upper bound, because a step up would be clamped.
       // The phase of a wave grows with the travel, so its period allows no large step.
       const double size = free.entries.front().first == "period" ? kDifferenceStep : difference_;
@@ -79,17 +66,13 @@ class WindowResiduals : public ceres::CostFunction {
       evaluate(moved, there.data());
       jacobian.col(column) = (there - here) / step;
     }
-    if (keeps && !has_kept) kept_ = jacobian;
     return jacobian.allFinite();
   }
 
   double steps() const { return steps_; }
 
   /// The difference step from now on.
-  void differ_by(double step) {
-    difference_ = step;
-    kept_.resize(0, 0);
-  }
+  void differ_by(double step) { difference_ = step; }
 
  private:
   /// The residuals here. Ceres asks for those of one point up to three times in a row: in the line search, for the new
@@ -125,10 +108,7 @@ class WindowResiduals : public ceres::CostFunction {
   const RecordSet& set_;
   Eigen::Index rows_;
   double belief_weight_ = 0.0;
-  double kept_until_;
   double difference_ = kDifferenceStep;
-  mutable Eigen::MatrixXd kept_ = {};  ///< slopes, and the squared error at which they were computed
-  mutable double kept_square_ = 0.0;
   mutable Eigen::VectorXd point_ = {}, at_point_ = {};  ///< the last point, and its residuals
   mutable double steps_ = 0.0;
 };
@@ -159,7 +139,7 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
     scaled(k) = initial(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
 
   ceres::Problem problem;
-  auto* residuals = new WindowResiduals(start, vector, training, options.kept_slopes_until);  // the problem owns it
+  auto* residuals = new WindowResiduals(start, vector, training);  // the problem owns it
   problem.AddResidualBlock(residuals, nullptr, scaled.data());
   for (std::size_t k = 0; k < vector.size(); ++k) {
     const FreeParameter& free = vector.parameters()[k];

@@ -18,10 +18,6 @@ struct FitOptions {
   /// Number of integrator steps after which a fit ends with its present values. It is not a time limit, so that every
   /// computer gives the same result.
   double most_steps = HUGE_VAL;
-  /// The slopes of the other effects' parameters are kept from step to step while the squared error is above this part
-  /// of the one at which they were computed (a chord method); 1 computes them anew in every step. A fit with kept
-  /// slopes ends near the optimum, so it serves to rank starts.
-  double kept_slopes_until = 1.0;
 };
 
 /// For an effect on a base that was fitted without it, and would suppress it: its size first, alone. A spectrum, for

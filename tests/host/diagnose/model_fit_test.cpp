@@ -95,16 +95,4 @@ TEST(Fit, ReturnsAModelWhoseParametersAreAllHeld) {
   EXPECT_TRUE(host::estimate_intervals(model, set).empty());
 }
 
-// Catches slopes that are kept for good, and slopes that are never kept.
-TEST(Fit, WithKeptSlopesEndsNearTheOptimumInFewerSteps) {
-  const host::Record record = HandMade::record(3.0);
-  sim::DriveDescription model = heavier(HandMade::model());
-  model.effects.push_back({"constant_torque", {{"torque", 0.3}}, {}, {}});
-  const host::RecordSet set = host::compare_on({&record}, model);
-  const host::FitResult exact = host::fit_model(model, set);
-  EXPECT_LT(host::fit_model(model, set, {.kept_slopes_until = 0.5}).robust, 1.05 * exact.robust);
-  const host::FitResult chord = host::fit_model(model, set, {.kept_slopes_until = 0.0});
-  EXPECT_LT(chord.steps / chord.iterations, 0.7 * exact.steps / exact.iterations);
-}
-
 }  // namespace
