@@ -14,7 +14,6 @@ import unittest
 from pathlib import Path
 
 from served_page import ServedPage  # ends here without a browser
-from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -58,27 +57,17 @@ class Live(ServedPage, SimulatedBoard):
         WebDriverWait(None, patience_s, 0.05).until(lambda _: holds(), what)
 
     def take_and_enable(self) -> None:
-        """On a busy computer a page may be silent for half a second, and so loses the command: then it takes it again."""
+        """A page that got no processor time for half a second has lost the command, as it must: it takes it again."""
 
         def is_enabled() -> bool:
-            for button in ("#claim:enabled", "#enable-x:enabled"):
+            for button in ("#claim:enabled", "#clear-faults", "#enable-x:enabled"):
                 for shown in self.browser.find_elements(By.CSS_SELECTOR, button):
-                    if shown.is_displayed():
+                    if shown.is_displayed() and not self.browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"):
                         self.browser.execute_script("arguments[0].click()", shown)
+            time.sleep(0.3)
             return bool(self.browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"))
 
-        self.soon(is_enabled, "the page commands, and the axis is enabled")
-
-    def enable_again(self) -> None:
-        """A page that got no processor time for half a second has lost the command, as it must: takes it again."""
-        def enabled(browser) -> bool:
-            for selector in ("#claim:enabled", "#clear-faults", "#enable-x:enabled"):
-                for button in browser.find_elements(By.CSS_SELECTOR, selector):
-                    if button.is_displayed() and not browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"):
-                        button.click()
-            return bool(browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"))
-
-        WebDriverWait(self.browser, 60, 0.5, (WebDriverException,)).until(enabled, "enabled")
+        self.soon(is_enabled, "the page commands, and the axis is enabled", 60)
 
     def set_speed(self, value: str) -> None:
         speed = self.until("[aria-label='Jog speed of x']")
@@ -87,7 +76,7 @@ class Live(ServedPage, SimulatedBoard):
 
     def begin_jog(self) -> None:
         """Presses the jog button with the mouse and keeps it pressed."""
-        self.enable_again()
+        self.take_and_enable()
         button = self.until("#jog-x-plus:enabled")
         before = self.at_mm()
         ActionChains(self.browser).click_and_hold(button).perform()
