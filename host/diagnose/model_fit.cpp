@@ -19,9 +19,10 @@ namespace {
 /// curvature does not matter.
 constexpr double kDifferenceStep = 1e-4;
 
-/// The same for a drive with impacts, whose errors are rough on a finer scale. A fit over this difference comes near
-/// the optimum, a second one over the finer difference follows.
-constexpr double kAcrossImpacts = 1e-2;
+/// The same for a drive with impacts, whose errors are rough on a finer scale. A fit over this difference comes near the
+/// optimum. It keeps the slopes of all parameters but those of the last effect until its squared error is kKeptUntil of
+/// what it was (a chord method). A second fit over the finer difference follows, with all slopes.
+constexpr double kAcrossImpacts = 1e-2, kKeptUntil = 0.5;
 
 std::vector<double> difference_steps(const sim::DriveDescription& model) {
   const sim::Drive drive(model);
@@ -53,9 +54,17 @@ class WindowResiduals : public ceres::CostFunction {
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(jacobians[0], rows_,
                                                                                                 columns);
     Eigen::VectorXd there(rows_);
+    const double square = here.squaredNorm();
+    const bool keeps = difference_ > kDifferenceStep;
+    const bool has_kept = kept_.size() > 0 && square > kKeptUntil * kept_square_;
+    if (keeps && !has_kept) kept_square_ = square;
     for (Eigen::Index column = 0; column < columns; ++column) {
       if (is_cancelled()) return false;
       const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
+      if (has_kept && free.effect + 1 < model_.effects.size()) {
+        jacobian.col(column) = kept_.col(column);
+        continue;
+      }
       // A step down from the upper bound, because a step up would be clamped.
       // The phase of a wave grows with the travel, so its period allows no large step.
       const double size = free.entries.front().first == "period" ? kDifferenceStep : difference_;
@@ -66,13 +75,17 @@ class WindowResiduals : public ceres::CostFunction {
       evaluate(moved, there.data());
       jacobian.col(column) = (there - here) / step;
     }
+    if (keeps && !has_kept) kept_ = jacobian;
     return jacobian.allFinite();
   }
 
   double steps() const { return steps_; }
 
   /// The difference step from now on.
-  void differ_by(double step) { difference_ = step; }
+  void differ_by(double step) {
+    difference_ = step;
+    kept_.resize(0, 0);
+  }
 
  private:
   /// The residuals here. Ceres asks for those of one point up to three times in a row: in the line search, for the new
@@ -109,6 +122,8 @@ class WindowResiduals : public ceres::CostFunction {
   Eigen::Index rows_;
   double belief_weight_ = 0.0;
   double difference_ = kDifferenceStep;
+  mutable Eigen::MatrixXd kept_ = {};  ///< slopes, and the squared error at which they were computed
+  mutable double kept_square_ = 0.0;
   mutable Eigen::VectorXd point_ = {}, at_point_ = {};  ///< the last point, and its residuals
   mutable double steps_ = 0.0;
 };
