@@ -1,7 +1,6 @@
 #include "host/workbench/server.hpp"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <atomic>
 #include <chrono>
@@ -30,6 +29,9 @@
 #include "host/workbench/page_files.hpp"
 #include "host/workbench/request.hpp"
 #include "host/workbench/story.hpp"
+
+// Last: its <resolv.h> defines _res as a macro, and Eigen uses that name.
+#include <httplib.h>
 
 namespace host::workbench {
 
