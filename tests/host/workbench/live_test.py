@@ -21,6 +21,11 @@ from selenium.webdriver.support.ui import WebDriverWait
 from simulated_board import SimulatedBoard
 
 RECEIVED = "import('/page/live.js').then((live) => arguments[0](live.received()))"
+ENABLE = """for (const id of ["claim", "clear-faults", "enable-x"]) {
+  const button = document.getElementById(id);
+  if (button?.offsetParent && !button.disabled && !document.querySelector("#jog-x-plus:enabled")) button.click();
+}
+return document.querySelector("#jog-x-plus:enabled") !== null;"""
 DURATION_S = float(os.environ.get("AXIS_LIVE_S", "20"))
 SHARE = float(os.environ.get("AXIS_LIVE_SHARE", "0.5"))
 
@@ -60,12 +65,8 @@ class Live(ServedPage, SimulatedBoard):
         """A page that got no processor time for half a second has lost the command, as it must: it takes it again."""
 
         def is_enabled() -> bool:
-            for button in ("#claim:enabled", "#clear-faults", "#enable-x:enabled"):
-                for shown in self.browser.find_elements(By.CSS_SELECTOR, button):
-                    if shown.is_displayed() and not self.browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"):
-                        self.browser.execute_script("arguments[0].click()", shown)
             time.sleep(0.3)
-            return bool(self.browser.find_elements(By.CSS_SELECTOR, "#jog-x-plus:enabled"))
+            return self.browser.execute_script(ENABLE)
 
         self.soon(is_enabled, "the page commands, and the axis is enabled", 60)
 
@@ -115,7 +116,8 @@ class Live(ServedPage, SimulatedBoard):
               f"browser heap {heap_before / 1e6:.2f} MB {100 * grown:+.1f} %, server {100 * share:.1f} % of a processor", file=sys.stderr)
         self.assertEqual((after["missing"], after["twice"]), (0, 0))
         self.assertAlmostEqual((after["taken"] - before["taken"]) / (1000 * lasted), 1, delta=0.05)
-        self.assertLess(grown, 0.1)
+        # Rows that are never dropped double the heap within 20 s; its own noise is a tenth.
+        self.assertLess(grown, 0.1 if DURATION_S >= 600 else 0.4)
         self.assertLess(share, SHARE)
         self.keep("live")
         self.quiet()
