@@ -44,7 +44,7 @@ export function motionPanel(leaving) {
     const moves = [jog(-1), jog(1), axis.homes ? home : here];
     const update = () => {
       const now = state?.axes[board.axes.indexOf(axis)];
-      if (!now) return;
+      if (!now) return [enable, disable, ...moves].forEach((button) => (button.disabled = true));
       const isEnabled = now.state === "enabled";
       told.textContent = now.state;
       told.className = "badge" + (now.fault ? " bad" : isEnabled ? " good" : "");
