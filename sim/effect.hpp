@@ -44,7 +44,7 @@ struct ParameterInfo {
   std::vector<double> starts{};  ///< start values of a fit, in units of `scale`; several for several local minima
   bool optional = false;         ///< may be absent from a model file
   bool absent_at_lower = false;  ///< at the lower bound this part of the effect is absent: an undamped spring
-  bool absent_at_upper = false;  ///< the same at the upper bound: no friction on the motor's side
+  bool absent_at_upper = false;  ///< the same at the upper bound: a contact without a spring, a motor without friction
   std::string_view pair_of{};  ///< set for a parameter that gives both directions: replaces the pair positive/negative
 
   std::string_view key(DriveKind kind) const { return kind == DriveKind::rotary ? rotary_key : linear_key; }

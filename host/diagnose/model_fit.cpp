@@ -19,7 +19,7 @@ namespace {
 /// curvature does not matter.
 constexpr double kDifferenceStep = 1e-4;
 
-/// The same for a drive with impacts, whose errors are rough on a finer scale. A fit over this difference comes near
+/// The same for a drive with impacts, whose error is not smooth on a finer scale. A fit over this difference comes near
 /// the optimum. It keeps the slopes of all parameters but those of the last effect until its squared error is
 /// kKeptUntil of what it was (a chord method). A second fit over the finer difference follows, with all slopes.
 constexpr double kAcrossImpacts = 1e-2, kKeptUntil = 0.5;
