@@ -9,6 +9,7 @@
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/compare/comparison_report.hpp"
+#include "host/compare/look_alike.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/compare/tracking_error.hpp"
 #include "host/model/model_file.hpp"
@@ -16,7 +17,6 @@
 #include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/report/text_format.hpp"
-#include "host/workbench/look_alike.hpp"
 
 namespace axistool {
 
@@ -112,9 +112,9 @@ void run(CompareArguments& arguments) {
                                   host::predictions_csv(models[0].model, models[0].set.records[r].prepared));
   }
   if (!arguments.report.empty()) host::comparison_report(models, arguments.focus()).write(arguments.report);
-  const nlohmann::json likeness =
-      arguments.like.empty() ? nlohmann::json()
-                             : host::workbench::likeness_json(models.front(), arguments.focus(), arguments.like);
+  const nlohmann::json likeness = arguments.like.empty()
+                                      ? nlohmann::json()
+                                      : host::likeness_json(models.front(), arguments.focus(), arguments.like);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::comparison_document(models);
     if (!likeness.is_null()) document["likeness"] = likeness;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/model/effect_forms.hpp"
+#include "host/model/model_file.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 
@@ -206,6 +207,10 @@ std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal) {
   page += "\nIn the model file of a linear drive\n";
   append_indented(page, effect_example_toml(info, sim::DriveKind::linear));
   return page;
+}
+
+sim::DriveDescription with_example(const sim::DriveDescription& model, const sim::EffectInfo& info) {
+  return parse_model(format_model(model) + effect_example_toml(info, model.data.kind), std::string(info.kind));
 }
 
 std::string effect_example_toml(const sim::EffectInfo& info, sim::DriveKind kind) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/report/terminal.hpp"
+#include "sim/drive_description.hpp"
 #include "sim/effect.hpp"
 
 namespace host {
@@ -18,6 +19,9 @@ std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal);
 /// An entry for a model file, with values that are typical of a drive of some kilowatts. Uses the form with one value
 /// for both directions, if there is one.
 std::string effect_example_toml(const sim::EffectInfo& info, sim::DriveKind kind);
+
+/// The model with that entry added. Throws Failure(bad_input) if the model cannot take the effect.
+sim::DriveDescription with_example(const sim::DriveDescription& model, const sim::EffectInfo& info);
 
 /// "axis-effects/1": the whole catalogue, or one effect.
 nlohmann::json effects_json();

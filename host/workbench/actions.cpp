@@ -9,6 +9,7 @@
 
 #include "host/cancellation.hpp"
 #include "host/compare/comparison_report.hpp"
+#include "host/compare/look_alike.hpp"
 #include "host/compare/tracking_error.hpp"
 #include "host/diagnose/addition.hpp"
 #include "host/diagnose/adjustment.hpp"
@@ -31,7 +32,6 @@
 #include "host/report/plot_json.hpp"
 #include "host/report/text_format.hpp"
 #include "host/workbench/effect_picture.hpp"
-#include "host/workbench/look_alike.hpp"
 
 namespace host::workbench {
 

@@ -13,7 +13,6 @@
 #include "host/compare/residual_figures.hpp"
 #include "host/diagnose/found_effect.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "host/model/model_file.hpp"
 #include "host/report/effect_pages.hpp"
 #include "host/statistics.hpp"
 #include "sim/plant.hpp"
@@ -59,8 +58,7 @@ sim::DriveDescription drive_with(const sim::EffectInfo& info) {
       value *= 1.0 + kMissing;
     return drive;
   }
-  const sim::DriveDescription example =
-      parse_model(format_model(drive) + effect_example_toml(info, drive.data.kind), info.kind);
+  const sim::DriveDescription example = with_example(drive, info);
   drive.effects = example.effects;
   for (sim::EffectEntry& entry : drive.effects)
     for (const OtherValue& other : kOtherValues)

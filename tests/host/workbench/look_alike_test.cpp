@@ -1,5 +1,5 @@
 // The effect that a machine hides looks most like its residual, over the coordinate in which it shows.
-#include "host/workbench/look_alike.hpp"
+#include "host/compare/look_alike.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +12,14 @@
 
 namespace {
 
-using host::workbench::LookAlike;
+using host::LookAlike;
 
 std::vector<LookAlike> alike_in(const std::string& number, const std::string& coordinate) {
   const std::string folder = std::string(AXIS_TEST_DATA) + "/drive-cases/single/case-" + number;
   const sim::DriveDescription model = host::read_model(folder + "/model.toml");
   const host::ComparedModel compared =
       host::compare_with("model.toml", model, {host::read_record(folder + "/train-jog.csv")}, host::kWindow_s, {});
-  return host::workbench::look_alikes(compared.model, compared.set, coordinate, host::ripple_period(model));
+  return host::look_alikes(compared.model, compared.set, coordinate, host::ripple_period(model));
 }
 
 TEST(LookAlike, TheHiddenEffectHasTheShapeOfTheResidual) {

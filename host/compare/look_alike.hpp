@@ -8,7 +8,7 @@
 
 #include "host/compare/comparison_figures.hpp"
 
-namespace host::workbench {
+namespace host {
 
 struct LookAlike {
   std::string kind;
@@ -27,4 +27,4 @@ std::vector<LookAlike> look_alikes(const sim::DriveDescription& model, const Rec
 /// "axis-likeness/1": { "over", "effects": [{ "kind", "title", "likeness" }] }, five at most.
 nlohmann::json likeness_json(const ComparedModel& compared, const Focus& focus, const std::string& coordinate);
 
-}  // namespace host::workbench
+}  // namespace host

@@ -1,4 +1,4 @@
-#include "host/workbench/look_alike.hpp"
+#include "host/compare/look_alike.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,12 @@
 #include "host/cancellation.hpp"
 #include "host/compare/residual_figures.hpp"
 #include "host/exit_codes.hpp"
-#include "host/model/model_file.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/effect_pages.hpp"
 #include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
 
-namespace host::workbench {
+namespace host {
 
 namespace {
 
@@ -74,10 +73,10 @@ double best_period(const ResidualEffort& samples, double longest, bool by_direct
   return best;
 }
 
-/// The model with an example of the effect; nullopt if the model cannot take it.
-std::optional<sim::DriveDescription> with_example(const sim::DriveDescription& model, const sim::EffectInfo& info) {
+/// with_example(); nullopt if the model cannot take the effect.
+std::optional<sim::DriveDescription> machine_with(const sim::DriveDescription& model, const sim::EffectInfo& info) {
   try {
-    return parse_model(format_model(model) + effect_example_toml(info, model.data.kind), std::string(info.kind));
+    return with_example(model, info);
   } catch (const Failure&) {
     return std::nullopt;
   }
@@ -104,7 +103,7 @@ std::vector<LookAlike> look_alikes(const sim::DriveDescription& model, const Rec
   for (const sim::EffectInfo* info : sim::catalogue()) {
     const bool is_apart = info->stage == sim::Stage::table || info->stage == sim::Stage::tachometer;
     if (info->base || info->curve || is_apart || model.find(info->kind) != nullptr) continue;
-    std::optional<sim::DriveDescription> machine = with_example(model, *info);
+    std::optional<sim::DriveDescription> machine = machine_with(model, *info);
     if (!machine) continue;
     throw_if_cancelled();
     sim::EffectEntry& entry = *machine->find(info->kind);
@@ -141,4 +140,4 @@ nlohmann::json likeness_json(const ComparedModel& compared, const Focus& focus, 
   return {{"format", "axis-likeness/1"}, {"over", coordinate}, {"effects", std::move(effects)}};
 }
 
-}  // namespace host::workbench
+}  // namespace host
