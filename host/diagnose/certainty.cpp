@@ -35,13 +35,10 @@ const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kin
   return found == diagnosis.candidates.end() ? nullptr : &*found;
 }
 
-/// Share of the squared error on held-back records that a candidate explains, in the measure in which it explains more.
-double taken_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  const auto taken = [](double before, double after) {
-    return before > 0.0 ? 1.0 - after * after / (before * before) : 0.0;
-  };
-  return std::max(taken(candidate.before, candidate.after),
-                  taken(diagnosis.before_level.validate, candidate.level.validate));
+/// Share of the squared error on held-back records that a candidate explains.
+double taken_by(const JudgedCandidate& candidate) {
+  const double kept = candidate.after / candidate.before;
+  return candidate.before > 0.0 ? 1.0 - kept * kept : 0.0;
 }
 
 /// Whether an effect is present together with certain ones with a probability of at least kClaimed, and takes enough of
@@ -66,7 +63,7 @@ Kinds rivals_beside(const Kinds& certain, const Diagnosis& diagnosis) {
   std::ranges::stable_sort(further, std::greater(), &JudgedCandidate::probability);
   Kinds group;
   for (const JudgedCandidate* candidate : further) {
-    if (taken_by(*candidate, diagnosis) < kWorthNaming) break;
+    if (taken_by(*candidate) < kWorthNaming) break;
     group.push_back(
         *std::ranges::find_if(candidate->kinds, [&](const std::string& kind) { return !holds(certain, kind); }));
     if (probability_of_any(diagnosis, group, certain) < kClaimed) continue;
@@ -156,7 +153,7 @@ void settle_status(Diagnosis& diagnosis) {
   if (!named || diagnosis.candidates.empty()) return;
   if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kClaimed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
-  const bool hardly_helps = whole != nullptr && taken_by(*whole, diagnosis) < kWorthNaming;
+  const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
   // All named effects are certain together; other effects of the best candidate are at most part of a group of rivals.
   Kinds together;
   if (verdict.status == Status::missing && !hardly_helps) {

@@ -37,8 +37,7 @@ bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   const auto on = [&](double before, double after) {
     return before > kSomething && after < (1.0 - kLeastGain) * before && explained_share(before, after) >= least;
   };
-  return (on(candidate.before, candidate.after) || on(diagnosis.before_level.validate, candidate.level.validate)) &&
-         (on(diagnosis.before_train, candidate.train_after) || on(diagnosis.before_level.train, candidate.level.train));
+  return on(candidate.before, candidate.after) && on(diagnosis.before_train, candidate.train_after);
 }
 
 double combined_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.train_after * candidate.after); }
@@ -51,10 +50,8 @@ double explained_share(double before, double after) {
 }
 
 double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  return std::min(std::max(explained_share(candidate.before, candidate.after),
-                           explained_share(diagnosis.before_level.validate, candidate.level.validate)),
-                  std::max(explained_share(diagnosis.before_train, candidate.train_after),
-                           explained_share(diagnosis.before_level.train, candidate.level.train)));
+  return std::min(explained_share(candidate.before, candidate.after),
+                  explained_share(diagnosis.before_train, candidate.train_after));
 }
 
 double level_of_both(const SetLevels& level) { return std::sqrt(level.train * level.validate); }
@@ -66,8 +63,7 @@ bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double 
 }
 
 double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more) {
-  return std::max(explained_share(level_of_both(less.level), level_of_both(more.level)),
-                  explained_share(combined_of_both(less), combined_of_both(more)));
+  return explained_share(combined_of_both(less), combined_of_both(more));
 }
 
 std::size_t parameters_of(const JudgedCandidate& candidate) {

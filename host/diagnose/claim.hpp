@@ -28,8 +28,7 @@ inline constexpr double kAsGood = 1.1;
 /// Explained share of the explainable squared error, before^2 - kComplete^2; 0..1. 0 if nothing is explainable.
 double explained_share(double before, double after);
 
-/// The same share of a candidate, on the set of which it is smaller. The larger one of combined error and level,
-/// because no model predicts the times of late breakaways and impacts, and because some effects show in few windows.
+/// The same share of a candidate, on the set of which it is smaller.
 double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Geometric mean of both levels.
@@ -38,7 +37,7 @@ double level_of_both(const SetLevels& level);
 /// Whether one candidate has the lower level, and the lower level or combined error by more than `share`.
 bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double share);
 
-/// explained_share() of what one candidate leaves by another, the larger one of level and combined error.
+/// explained_share() of what one candidate leaves by another, on both sets.
 double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more);
 
 /// Number of parameters that a candidate adds to the base.

@@ -94,7 +94,6 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   const Candidate& best = all.empty() || base.log_loss() < (*likeliest)->log_loss() ? base : **likeliest;
   renew_floors(training, best.model);
   renew_floors(validation, best.model);
-  diagnosis.before_level = levels_of(before_train, before, best);
   diagnosis.before_train = before_train.combined;
   diagnosis.before_validate = before.combined;
   judge_candidates(diagnosis, all, best, before);
