@@ -169,7 +169,7 @@ std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis
 bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after) {
   return std::ranges::any_of(before.parameters, [&](const auto& parameter) {
     const auto& [id, value] = parameter;
-    return std::abs(after.at(id) - value) > kMoved * std::abs(value);
+    return !after.has(id) || std::abs(after.at(id) - value) > kMoved * std::abs(value);
   });
 }
 

@@ -9,7 +9,7 @@ namespace host {
 /// Combined error above which something remains to be explained; a perfect model gives about 1.
 inline constexpr double kExplained = 1.25;
 
-/// Whether a refit changed a parameter of an effect by more than 5 %.
+/// Whether a refit changed a parameter of an effect by more than 5 %, or its form.
 bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after);
 
 /// Kinds of the base with a parameter that a refit changed by more than 5 %.

@@ -8,6 +8,7 @@
 
 #include "host/compare/chance.hpp"
 #include "host/diagnose/probability.hpp"
+#include "host/diagnose/verdict.hpp"
 #include "tests/host/diagnose/sum_of_probabilities.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
@@ -94,6 +95,15 @@ TEST(Claim, TheEndOfARangeIsSeenButNotWhereAPartIsAbsent) {
   EXPECT_THAT(host::parameters_on_bound(model, {"backlash"}), testing::IsEmpty()) << "all friction is on the load";
   model.effects.back() = {"friction_lag", {{"time", 1e-4}}, {}, {}};
   EXPECT_THAT(host::parameters_on_bound(model, {"friction_lag"}), testing::IsEmpty());
+}
+
+TEST(Claim, AnotherFormOfAnEffectHasMoved) {
+  const sim::EffectEntry level{"coulomb", {{"level", 2.0}}, {}, {}};
+  const sim::EffectEntry sides{"coulomb", {{"positive", 2.0}, {"negative", -2.0}}, {}, {}};
+  const sim::EffectEntry nearly{"coulomb", {{"level", 2.05}}, {}, {}};
+  EXPECT_TRUE(host::has_moved(level, sides));
+  EXPECT_TRUE(host::has_moved(sides, level));
+  EXPECT_FALSE(host::has_moved(level, nearly));
 }
 
 std::vector<double> losses(std::size_t windows, double each) { return std::vector<double>(windows, each); }
