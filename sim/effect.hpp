@@ -69,7 +69,7 @@ enum class Stage { command, motor, load, friction, mechanics, encoder, tachomete
 enum class View {
   curve,   ///< the residual over one coordinate of EffectInfo::along, forward and backward apart
   starts,  ///< the torque or force of each start from rest, over the duration of the rest
-  moment   ///< the residual of the predicted motion, sample by sample, where the effect changes it most
+  moment   ///< the residual of the predicted motion, sample by sample, where the effect shows most
 };
 
 struct EffectInfo {

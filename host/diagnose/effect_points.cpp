@@ -37,50 +37,69 @@ std::vector<double> without_line(std::vector<double> values) {
   return values;
 }
 
-/// One measured channel and its prediction.
-struct Channel {
-  std::vector<double> Record::*measured;
-  std::vector<double> Prediction::*predicted;
-  Axis axis;
-  double factor;  ///< from the drive's unit to that of the axis
+/// Rows at each end of a window at which a slope over the position does not lie within it.
+constexpr std::size_t kReach = 2;
+
+/// Slope of the position in the unit of the speed.
+std::vector<double> slopes_of(const std::vector<double>& x, double row_travel) {
+  std::vector<double> slopes(x.size(), std::nan(""));
+  for (std::size_t k = kReach; k + kReach < x.size(); ++k)
+    slopes[k] = (x[k + kReach] - x[k - kReach]) / (2.0 * kReach * row_travel);
+  return slopes;
+}
+
+/// Speeds of all rows, measured and predicted: the speed channel, or without one the slope of the position.
+struct Speeds {
+  std::vector<double> measured, without, with;
+  bool by_slope;
+
+  Speeds(const PreparedRecord& prepared, const Prediction& before, const Prediction& after, double lead)
+      : measured(prepared.record->w), without(before.w), with(after.w), by_slope(!prepared.record->has_speed()) {
+    if (!by_slope) return;
+    const double row_travel = lead * prepared.period_s;
+    measured = slopes_of(prepared.record->x, row_travel);
+    without = slopes_of(before.x, row_travel);
+    with = slopes_of(after.x, row_travel);
+  }
 };
 
-EffectPoints window_points(const Channel& channel, const PreparedRecord& prepared, const Window& window,
-                           const Prediction& before, const Prediction& after) {
+/// The rows of a window in which the speeds are known.
+std::pair<std::size_t, std::size_t> rows_of(const Window& window, const Speeds& speeds) {
+  const std::size_t reach = speeds.by_slope ? kReach : 0;
+  return {window.begin + 1 + reach, window.begin + window.length - reach};
+}
+
+EffectPoints window_points(const Speeds& speeds, const PreparedRecord& prepared, const Window& window) {
   const Record& record = *prepared.record;
+  const auto [first, last] = rows_of(window, speeds);
   EffectPoints points;
   points.x = {"time", "s"};
-  points.y = channel.axis;
-  const std::vector<double>&measured = record.*channel.measured, &less = before.*channel.predicted,
-        &more = after.*channel.predicted;
-  for (std::size_t row = window.begin + 1; row <= window.begin + window.length; ++row) {
+  for (std::size_t row = first; row <= last; ++row) {
     points.at.push_back(record.t_s[row] - record.t_s.front());
-    points.residual.push_back(channel.factor * (measured[row] - less[row]));
-    points.part.push_back(channel.factor * (more[row] - less[row]));
+    points.residual.push_back(speeds.measured[row] - speeds.without[row]);
+    points.part.push_back(speeds.with[row] - speeds.without[row]);
     points.forward.push_back(prepared.motion().w[row] > 0.0);
   }
   return points;
 }
 
-/// Measured and predicted channel and the command in the same window.
-TimePlot window_traces(const Channel& channel, const PreparedRecord& prepared, const Window& window,
-                       const Prediction& before, const Prediction& after, sim::DriveKind kind) {
-  const Record& record = *prepared.record;
-  const auto part = [&](const std::vector<double>& values, double offset = 0.0) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(window.begin) + 1;
-    std::vector<double> rows(first, first + static_cast<std::ptrdiff_t>(window.length));
-    for (double& value : rows) value -= offset;
-    return rows;
+/// Measured and predicted speed and the command in the same window.
+TimePlot window_traces(const Speeds& speeds, const PreparedRecord& prepared, const Window& window,
+                       const std::string& unit) {
+  const auto [first, last] = rows_of(window, speeds);
+  const auto part = [first = first, last = last](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(first),
+                               values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   };
-  const bool is_speed = channel.measured == &Record::w;
   TimePlot plot;
   plot.title = "Measured and predicted in that time";
-  plot.t_s = part(record.t_s, record.t_s.front());
-  plot.panels = {{is_speed ? "speed" : "position",
-                  is_speed ? units_of(kind).speed : units_of(kind).travel,
-                  {{"measured", SeriesRole::measured, part(record.*channel.measured)},
-                   {"without the effect", SeriesRole::before, part(before.*channel.predicted)},
-                   {"with it", SeriesRole::after, part(after.*channel.predicted)}}},
+  plot.t_s = part(prepared.record->t_s);
+  for (double& t_s : plot.t_s) t_s -= prepared.record->t_s.front();
+  plot.panels = {{"speed",
+                  unit,
+                  {{"measured", SeriesRole::measured, part(speeds.measured)},
+                   {"without the effect", SeriesRole::before, part(speeds.without)},
+                   {"with it", SeriesRole::after, part(speeds.with)}}},
                  {"command", "V", {{"command", SeriesRole::other, part(prepared.u_V)}}}};
   return plot;
 }
@@ -98,8 +117,8 @@ struct Breakaway {
 std::vector<Breakaway> starts_in(const sim::Drive& drive, const PreparedRecord& prepared, double resolution) {
   constexpr double kUnseen_s = 0.01, kShortest_s = 0.05, kStep = 1.5;
   const Record& record = *prepared.record;
-  const auto rows_of = [&](double time_s) { return static_cast<std::size_t>(std::ceil(time_s / prepared.period_s)); };
-  const std::size_t unseen = rows_of(kUnseen_s);
+  const auto rows_in = [&](double time_s) { return static_cast<std::size_t>(std::ceil(time_s / prepared.period_s)); };
+  const std::size_t unseen = rows_in(kUnseen_s);
   std::vector<Breakaway> starts;
   std::vector<double> efforts;  // of the present rest
   std::size_t begin = 0;        // its first row
@@ -109,7 +128,7 @@ std::vector<Breakaway> starts_in(const sim::Drive& drive, const PreparedRecord& 
     efforts.push_back(drive.follow(state, prepared.u_V[row], prepared.motion().x[row + 1], prepared.motion().w[row + 1],
                                    record.t_s[row], prepared.period_s));
     if (std::abs(record.x[row + 1] - record.x[begin]) < kStep * resolution) continue;
-    if (begin > 0 && efforts.size() > rows_of(kShortest_s)) {
+    if (begin > 0 && efforts.size() > rows_in(kShortest_s)) {
       standing.w = 0.0;
       standing.rest_s = static_cast<double>(efforts.size()) * prepared.period_s;
       Breakaway start{standing.rest_s, 0.0, 0.0, record.x[row + unseen] > record.x[row], standing, record.t_s[row]};
@@ -136,39 +155,34 @@ double EffectPoints::explained_share() const {
 std::optional<EffectPoints> moment_of(const sim::DriveDescription& without, const sim::DriveDescription& with,
                                       const RecordSet& set) {
   constexpr double kLength_s = 0.2, kClear = 0.9;
-  const DriveUnits units = units_of(with.data.kind);
-  const std::array channels{
-      Channel{&Record::w, &Prediction::w, {"speed residual", units.speed}, 1.0},
-      Channel{&Record::x, &Prediction::x, {"position residual", "µm"}, 1e3 * travel_in_mm(with.data.kind)}};
+  const std::string unit = units_of(with.data.kind).speed;
   const sim::Drive less(without), more(with);
-  std::array<EffectPoints, channels.size()> best;
-  std::array<double, channels.size()> highest{};
+  EffectPoints shown;
+  double highest = 0.0;
   Prediction before, after;
   for (const ComparedRecord& compared : set.records) {
     PreparedRecord prepared = in_long_windows(compared.prepared, kLength_s);
     if (prepared.windows.empty()) prepared = compared.prepared;
     predict(less, prepared, before);
     predict(more, prepared, after);
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-      if ((prepared.record->*channels[c].measured).size() != prepared.record->size()) continue;
-      for (const Window& window : prepared.windows) {
-        EffectPoints points = window_points(channels[c], prepared, window, before, after);
-        const double share = points.explained_share();
-        // A clear window counts by what the effect explains; any other by its share, below all clear ones.
-        const double rank =
-            share >= kClear ? 1.0 + explained_squares(without_line(points.residual), without_line(points.part)) : share;
-        if (rank <= highest[c]) continue;
-        highest[c] = rank;
-        points.context = window_traces(channels[c], prepared, window, before, after, with.data.kind);
-        points.caption = fmt::format("The {:.2g} s of {} in which the effect shows most.",
-                                     points.at.back() - points.at.front(), file_name(*prepared.record));
-        best[c] = std::move(points);
-      }
+    const Speeds speeds(prepared, before, after, less.lead);
+    for (const Window& window : prepared.windows) {
+      EffectPoints points = window_points(speeds, prepared, window);
+      const double share = points.explained_share();
+      // A clear window counts by what the effect explains; any other by its share, below all clear ones.
+      const double rank =
+          share >= kClear ? 1.0 + explained_squares(without_line(points.residual), without_line(points.part)) : share;
+      if (!(rank > highest)) continue;
+      highest = rank;
+      points.context = window_traces(speeds, prepared, window, unit);
+      points.caption = fmt::format("The {:.2g} s of {} in which the effect shows most.",
+                                   points.at.back() - points.at.front(), file_name(*prepared.record));
+      shown = std::move(points);
     }
   }
-  EffectPoints& shown = best[0].at.empty() ? best[1] : best[0];
   if (shown.at.empty()) return {};
-  return std::move(shown);
+  shown.y = {"speed residual", unit};
+  return shown;
 }
 
 std::optional<EffectPoints> starts_of(const sim::DriveDescription& without, const sim::DriveDescription& with,

@@ -27,11 +27,11 @@ struct EffectPoints {
   double explained_share() const;
 };
 
-/// View::moment. The residual of the predicted speed, or without a speed of the position, in one window of up to 0.2 s,
-/// in which the prediction does not restart. Among the windows in which the effect explains 90 % of the squared
-/// residual, it is the one in which the effect explains most, not counting a straight line, because a difference that
-/// only grows shows little of its cause. If there is no such window, it is the one with the largest share. Empty if the
-/// effect explains nothing.
+/// View::moment. The residual of the predicted speed in one window of up to 0.2 s, in which the prediction does not
+/// restart; without a speed channel, speeds are slopes of the position over 4 rows. Among the windows in which the
+/// effect explains 90 % of the squared residual, it is the one in which the effect explains most, not counting a
+/// straight line, because a difference that only grows shows little of its cause. If there is no such window, it is the
+/// one with the largest share. Empty if the effect explains nothing.
 std::optional<EffectPoints> moment_of(const sim::DriveDescription& without, const sim::DriveDescription& with,
                                       const RecordSet& set);
 

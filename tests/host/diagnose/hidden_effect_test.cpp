@@ -14,7 +14,7 @@ namespace {
 using testing::IsEmpty;
 using testing::UnorderedElementsAreArray;
 
-/// Least share of the squares in an effect's figure that the fitted effect explains; measured: 0.88 to 1.00.
+/// Least share of the squares in an effect's figure that the fitted effect explains; 0.88 to 1.00 on the drive cases.
 constexpr double kLeastExplained = 0.8;
 
 class HiddenEffect : public testing::TestWithParam<std::string> {};
