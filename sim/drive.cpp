@@ -269,6 +269,10 @@ bool Drive::shapes_effort() const {
          !load_effort.empty() || !effort_behind_screw.empty();
 }
 
+double Drive::breakaway_effort(DriveState& state, double effort, double t_s) const {
+  return RichContact(*this, state, t_s, state.x, effort).breakaway(effort >= 0.0 ? 0 : 1);
+}
+
 double Drive::sliding_effort(DriveState& state, double effort, double t_s) const {
   const RichContact contact(*this, state, t_s, state.x, effort);
   const double magnitude = contact.sliding(state.w >= 0.0 ? 0 : 1, std::abs(state.w)).effort;

@@ -95,6 +95,9 @@ class Drive {
   /// once, HUGE_VAL if only after a long rest or never.
   double rest_to_hold(DriveState state, double effort, double t_s) const;
 
+  /// Static friction of a standing state against this torque or force, >= 0, Nm or N.
+  double breakaway_effort(DriveState& state, double effort, double t_s) const;
+
   /// Friction of a sliding state, signed like its speed; `effort`: transmitted torque or force, Nm or N.
   double sliding_effort(DriveState& state, double effort, double t_s) const;
 

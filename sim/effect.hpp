@@ -65,6 +65,13 @@ struct ParameterInfo {
 /// visible only with a sensor on the table.
 enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer, table };
 
+/// The figure that shows an effect at a glance.
+enum class View {
+  curve,   ///< the residual over one coordinate of EffectInfo::along, forward and backward apart
+  starts,  ///< the torque or force of each start from rest, over the duration of the rest
+  moment   ///< the residual of the predicted motion, sample by sample, where the effect shows most
+};
+
 struct EffectInfo {
   std::string_view kind;
   std::string_view title;
@@ -82,6 +89,7 @@ struct EffectInfo {
   /// Coordinates on which its residual depends, for a diagnosis without this effect: speed, position,
   /// travel_since_reversal, acceleration, current, rest, time, frequency.
   std::vector<std::string_view> along{};
+  View view = View::curve;
   std::vector<std::string_view> confused_with;  ///< kinds with a similar residual
   std::string_view separate_by;                 ///< the experiment that tells them apart
   std::string_view origin;                      ///< its cause in a machine

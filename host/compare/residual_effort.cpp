@@ -115,27 +115,6 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
   }
 }
 
-/// Joins consecutive short windows, so that an average fits between two restarts.
-PreparedRecord in_long_windows(PreparedRecord prepared) {
-  const auto times = static_cast<std::size_t>(std::lround(kWindow_s / prepared.window_s()));
-  if (times < 2) return prepared;
-  std::vector<Window> joined;
-  const std::vector<Window>& all = prepared.windows;
-  for (std::size_t k = 0; k + times <= all.size();) {
-    const std::size_t length = all[k].length;
-    const bool whole =
-        (all[k].begin / length) % times == 0 && all[k + times - 1].begin == all[k].begin + (times - 1) * length;
-    if (whole) joined.push_back({all[k].begin, times * length});
-    k += whole ? times : 1;
-  }
-  std::vector<ShiftWeights> weights;
-  for (std::size_t k = 0; k < prepared.shift_weights->size(); k += times)
-    weights.push_back((*prepared.shift_weights)[k]);
-  prepared.windows = std::move(joined);
-  prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
-  return prepared;
-}
-
 ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set, Beyond what) {
   const sim::Drive drive(model);
   const bool with_temperature = std::ranges::none_of(
@@ -144,7 +123,7 @@ ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set
   Prediction prediction;
   std::size_t windows = 0;
   for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const PreparedRecord prepared = in_long_windows(set.records[r].prepared);
+    const PreparedRecord prepared = in_long_windows(set.records[r].prepared, kWindow_s);
     predict(drive, prepared, prediction);
     append(drive, model, prepared, r, prediction, windows, with_temperature, what, residual);
     windows += prepared.windows.size();

@@ -39,7 +39,10 @@ void add_found(Report& report, const std::vector<FoundEffect>& found, bool rival
   if (found.empty()) return;
   report.section(rivals ? "Possible explanations" : "What was found",
                  rivals ? "These records cannot tell these effects apart." : "");
-  for (const FoundEffect& effect : found) report.add(effect_plot(effect));
+  for (const FoundEffect& effect : found) {
+    report.add(effect_plot(effect));
+    if (effect.points && effect.points->is_record()) report.add(effect.points->context);
+  }
 }
 
 void add_unexplained(Report& report, const Diagnosis& diagnosis) {

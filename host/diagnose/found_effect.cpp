@@ -128,38 +128,6 @@ Peak peak_of(const Curves& curves) {
   return peak;
 }
 
-/// The 0.4 s in which the trace is strongest, in the strongest record.
-std::array<double, 2> strongest_seconds(const FoundEffect& effect) {
-  constexpr double kLength_s = 0.4;
-  const Values& t_s = effect.without.t_s;
-  double most = -1.0, sum = 0.0, begin_s = 0.0;
-  std::size_t first = 0;
-  for (std::size_t k = 0; k < t_s.size(); ++k) {
-    if (effect.without.record[k] != *effect.only_record) continue;
-    if (sum == 0.0) first = k;
-    sum += square_of(effect.trace[k]);
-    for (; t_s[k] - t_s[first] > kLength_s; ++first) sum -= square_of(effect.trace[first]);
-    if (sum <= most) continue;
-    most = sum;
-    begin_s = t_s[first];
-  }
-  return {begin_s, begin_s + kLength_s};
-}
-
-/// Whether a sample belongs to the cutout.
-bool is_in_cutout(const FoundEffect& effect, std::size_t sample) {
-  const auto [from_s, to_s] = *effect.cutout_s;
-  const double t_s = effect.without.t_s[sample];
-  return effect.without.record[sample] == *effect.only_record && t_s >= from_s && t_s <= to_s;
-}
-
-Peak peak_in_cutout(const FoundEffect& effect) {
-  Peak peak;
-  for (std::size_t k = 0; k < effect.trace.size(); ++k)
-    if (is_in_cutout(effect, k) && std::abs(effect.trace[k]) > std::abs(peak.mean)) peak = {0, k, effect.trace[k]};
-  return peak;
-}
-
 /// Range of the means and the lines, with a margin. It ignores the spread of the samples in a bin, which could flatten
 /// all curves.
 std::pair<double, double> range_of_means(const ScatterPlot& plot) {
@@ -204,7 +172,16 @@ ShownUnit shown_unit(std::string_view key, double value) {
   return {unit};
 }
 
-/// FoundEffect::size of a model. The trace is read in the bin at `peak`, or in a cutout at the sample at `peak`.
+/// Points of a view that is not of means over a coordinate.
+std::optional<EffectPoints> points_of(const sim::DriveDescription& model, std::string_view kind, sim::View view,
+                                      const RecordSet& shown) {
+  const sim::DriveDescription less = without_kind(model, kind);
+  if (view == sim::View::starts) return starts_of(less, model, shown);
+  if (view == sim::View::moment) return moment_of(less, model, shown);
+  return {};
+}
+
+/// FoundEffect::size of a model. The trace is read in the bin at `peak`.
 double size_in(const FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown,
                const Peak& peak) {
   const sim::EffectInfo& info = *sim::find_effect(effect.kind);
@@ -214,9 +191,12 @@ double size_in(const FoundEffect& effect, const sim::DriveDescription& model, co
   }
   if (info.stage == sim::Stage::encoder)
     return 1e3 * travel_in_mm(effect.drive) * largest_encoder_error(model, model.find(effect.kind)->at("period"));
+  if (effect.view == sim::View::starts) {
+    const auto points = points_of(model, effect.kind, effect.view, shown);
+    return points ? std::ranges::max(points->part) : 0.0;
+  }
   FoundEffect other = effect;
   trace_of(other, model, shown);
-  if (effect.cutout_s) return std::abs(other.trace[peak.bin]);
   return std::abs(direction_curves(other.without, other.trace, other.over)[peak.curve].y[peak.bin]);
 }
 
@@ -274,12 +254,15 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
   if (effect.only_record || effect.over.folded) trace_of(effect, model, shown);
   if (effect.over.folded) most = carried_share(effect.without, effect.trace, effect.over);  // of unblurred samples
   constexpr double kLeastCarried = 0.4;
-  if (most < kLeastCarried) {
-    effect.only_record = strongest_record(effect);
-    effect.cutout_s = strongest_seconds(effect);
+  const bool depends_on_none = info.view == sim::View::curve && most < kLeastCarried && !effect.over.folded;
+  effect.view = depends_on_none ? sim::View::moment : info.view;
+  effect.points = points_of(model, entry.kind, effect.view, shown);
+  if (effect.view == sim::View::starts && !effect.points) {
+    effect.view = sim::View::moment;
+    effect.points = points_of(model, entry.kind, effect.view, shown);
   }
-  const Peak peak =
-      effect.cutout_s ? peak_in_cutout(effect) : peak_of(direction_curves(effect.without, effect.trace, effect.over));
+  if (!effect.points) effect.view = sim::View::curve;
+  const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
   effect.unit = info.stage == sim::Stage::encoder ? "µm" : residual_unit(effect);
   if (const std::string id(main_parameter(info)); !id.empty())
     effect.unit = shown_unit(info.parameter(id)->key(effect.drive), std::abs(entry.at(id))).name;
@@ -333,50 +316,34 @@ void append_curves(const ResidualCoordinate& over, const ResidualEffort& residua
   }
 }
 
-namespace {
-
-/// The residual and the effect, sample by sample, over the seconds of the cutout.
-void append_cutout(const FoundEffect& effect, ScatterPlot& plot) {
-  plot.x = {"time", "s"};
-  plot.series = {{"residual, forward", SeriesRole::residual, SeriesStyle::points, {}, {}, {}, {}},
-                 {"residual, backward", SeriesRole::other, SeriesStyle::points, {}, {}, {}, {}},
-                 {"effect", SeriesRole::model, SeriesStyle::line, {}, {}, {}, {}}};
-  constexpr double kGap = 3.0;  // averages without a sample, in which the axis stands or reverses
-  const ResidualEffort& samples = effect.without;
-  ScatterSeries& line = plot.series.back();
-  for (std::size_t k = 0; k < effect.trace.size(); ++k) {
-    if (!is_in_cutout(effect, k)) continue;
-    const double t_s = samples.t_s[k];
-    if (!line.x.empty() && t_s - line.x.back() > kGap * samples.period_s) {
-      line.x.push_back(0.5 * (line.x.back() + t_s));
-      line.y.push_back(std::nan(""));
+double explained_share(const FoundEffect& effect) {
+  if (effect.points) return effect.points->explained_share();
+  const Curves all = direction_curves(effect.without, effect.without.missing, effect.over),
+               parts = direction_curves(effect.without, effect.trace, effect.over);
+  double whole = 0.0, left = 0.0;
+  for (std::size_t c = 0; c < all.size(); ++c)
+    for (std::size_t k = 0; k < std::min(all[c].y.size(), parts[c].y.size()); ++k) {
+      whole += all[c].samples[k] * square_of(all[c].y[k]);
+      left += all[c].samples[k] * square_of(all[c].y[k] - parts[c].y[k]);
     }
-    line.x.push_back(t_s);
-    line.y.push_back(effect.trace[k]);
-    ScatterSeries& residual = plot.series[samples.w[k] > 0.0 ? 0 : 1];
-    residual.x.push_back(t_s);
-    residual.y.push_back(samples.missing[k]);
-  }
-  std::erase_if(plot.series, [](const ScatterSeries& series) { return series.x.empty(); });
+  return whole > 0.0 ? 1.0 - left / whole : 0.0;
 }
-
-}  // namespace
 
 ScatterPlot effect_plot(const FoundEffect& effect) {
   ScatterPlot plot;
   plot.title = size_in_words(effect);
-  plot.caption = effect.cutout_s
-                     ? "The 0.4 s with the strongest effect. Points: residual of the model without it. Line: "
-                       "contribution of the fitted effect."
-                     : "Points: residual of the model without this effect, with the band that holds 80 % of the "
-                       "samples, on training and validation data. Lines: contribution of the fitted effect.";
+  plot.caption = fmt::format(
+      "{} Points: residual of the model without the effect{}. Lines: contribution of the fitted effect, which explains "
+      "{:.0f} % of the squares of these points.",
+      effect.points ? effect.points->caption : "Training and validation data.",
+      effect.points ? "" : ", with the band that holds 80 % of the samples", 100.0 * explained_share(effect));
   plot.large = true;
   plot.y = {effect.of_speed_channel                  ? "speed residual"
             : effect.drive == sim::DriveKind::rotary ? "torque residual"
                                                      : "force residual",
             residual_unit(effect)};
-  if (effect.cutout_s)
-    append_cutout(effect, plot);
+  if (effect.points)
+    append_points(*effect.points, plot);
   else
     append_curves(effect.over, effect.without, effect.trace, plot);
   if (const auto range = range_of_means(plot); range.first < range.second) plot.y_range = range;

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "host/compare/residual_figures.hpp"
+#include "host/diagnose/effect_points.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/report/report.hpp"
+#include "sim/effect.hpp"
 
 namespace host {
 
@@ -21,11 +23,12 @@ struct FoundEffect {
   ResidualEffort without;                  ///< residual of the model without the effect, all other parameters unchanged
   std::vector<double> trace;               ///< the effect's contribution: residual without it minus residual with it
   std::optional<std::size_t> only_record;  ///< for curves over time: other records' samples are NaN
-  /// Set if the trace depends on no coordinate, for example if it follows each step of the command: the interval of the
-  /// record with the strongest trace.
-  std::optional<std::array<double, 2>> cutout_s;
-  /// Size of the effect, >= 0. For torques and forces: largest mean of the trace over the coordinate, or its largest
-  /// value in a cutout. For an encoder error: its largest value. For effects of the command, the motor or the
+  /// What effect_plot() draws: the view that the effect's entry in the catalogue states, or the moment, if its trace
+  /// depends on none of its coordinates or the records have too few starts.
+  sim::View view = sim::View::curve;
+  std::optional<EffectPoints> points;  ///< of a view that is not of means over the coordinate
+  /// Size of the effect, >= 0. For torques and forces: largest mean of the trace over the coordinate, or the largest
+  /// part of a start. For an encoder error: its largest value. For effects of the command, the motor or the
   /// mechanics: their first parameter (a gap, a delay, a resonance).
   double size = 0.0;
   std::string unit;                           ///< of the size: Nm or N, rad/s or m/s, µm, ms, Hz ...
@@ -45,7 +48,11 @@ std::string size_in_words(const FoundEffect& effect);
 void append_curves(const ResidualCoordinate& over, const ResidualEffort& residual, const std::vector<double>& part,
                    ScatterPlot& plot);
 
-/// The residual without the effect over its coordinate, forward and backward, and the effect's own curve over it.
+/// Share of the squared residual in effect_plot() that the effect explains, at most 1.
+double explained_share(const FoundEffect& effect);
+
+/// The figure that shows the effect, as its entry in the catalogue states (sim::View): the residual without the effect
+/// as points, forward and backward, and the effect's own part as lines.
 ScatterPlot effect_plot(const FoundEffect& effect);
 
 }  // namespace host

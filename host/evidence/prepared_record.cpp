@@ -53,4 +53,24 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
   return prepared;
 }
 
+PreparedRecord in_long_windows(PreparedRecord prepared, double window_s) {
+  const auto times = static_cast<std::size_t>(std::lround(window_s / prepared.window_s()));
+  if (times < 2) return prepared;
+  std::vector<Window> joined;
+  const std::vector<Window>& all = prepared.windows;
+  for (std::size_t k = 0; k + times <= all.size();) {
+    const std::size_t length = all[k].length;
+    const bool whole =
+        (all[k].begin / length) % times == 0 && all[k + times - 1].begin == all[k].begin + (times - 1) * length;
+    if (whole) joined.push_back({all[k].begin, times * length});
+    k += whole ? times : 1;
+  }
+  std::vector<ShiftWeights> weights;
+  for (std::size_t k = 0; k < prepared.shift_weights->size(); k += times)
+    weights.push_back((*prepared.shift_weights)[k]);
+  prepared.windows = std::move(joined);
+  prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
+  return prepared;
+}
+
 }  // namespace host

@@ -47,4 +47,8 @@ struct PreparedRecord {
 /// without a command or shorter than one window.
 PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, double window_s = kWindow_s);
 
+/// The same record with consecutive windows joined to windows of `window_s`, if those are longer. Windows without all
+/// of their neighbours are dropped.
+PreparedRecord in_long_windows(PreparedRecord prepared, double window_s);
+
 }  // namespace host

@@ -365,9 +365,16 @@
     options.xRangePad = plot.logarithmicX ? 0 : 12;
     options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
     if (plot.yRange) options.valueRange = plot.yRange;
+    if (plot.logarithmicX) options.dateWindow = logarithmicWindow(plot.series.flatMap((one) => one.x));
     const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot, plot, elements.legend);
     if (!plot.equal) frame.axisScales = scalesOf(chart, plot, withBars);
     if (plot.equal) equaliseScales(chart, plot);
+  }
+
+  // Begins and ends somewhat beyond the values, because dygraphs pads only linear axes.
+  function logarithmicWindow(values) {
+    const range = values.filter((value) => value > 0).reduce((r, value) => [Math.min(r[0], value), Math.max(r[1], value)], [Infinity, -Infinity]);
+    return range[1] > range[0] ? [range[0] / 1.04, range[1] * 1.04] : null;
   }
 
   // Whether x and y are logarithmic, and functions to change it. Logarithmic axes show magnitudes without bars.

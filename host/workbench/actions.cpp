@@ -154,7 +154,8 @@ nlohmann::json gallery_picture(const std::string& kind) {
   return {{"plot", scatter_plot_json(picture.plot)},
           {"title", picture.plot.title},
           {"caption", picture.plot.caption},
-          {"stands_out", picture.stands_out}};
+          {"stands_out", picture.stands_out},
+          {"explained", picture.explained}};
 }
 
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,

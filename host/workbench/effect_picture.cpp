@@ -39,10 +39,13 @@ constexpr std::array kOtherValues{OtherValue{"current_saturation", "limit", 8.0}
                                   OtherValue{"cogging", "cosine", 0.15},
                                   OtherValue{"position_dependent_friction", "cosine", 0.2},
                                   OtherValue{"position_dependent_friction", "period", 10.0},
-                                  OtherValue{"encoder_cyclic_error", "cosine", 0.01}};
+                                  OtherValue{"encoder_cyclic_error", "cosine", 0.01},
+                                  OtherValue{"torque_ripple", "cosine", 0.15},
+                                  OtherValue{"dwell_stiction", "time_constant", 0.8}};
 
-/// Speeds of the jogs, rad/s, in both directions.
+/// Speeds of the jogs, rad/s, in both directions, and the rests between them, s.
 constexpr std::array kJogs{1.5, 4.0, 90.0, 10.0, 3.0, 25.0, 60.0, 6.0, 90.0, 15.0};
+constexpr std::array kRests_s{0.1, 0.2, 0.4, 0.8};
 
 sim::DriveDescription drive_without(const sim::EffectInfo& info) {
   sim::DriveDescription drive = *paper_drive("x");
@@ -66,9 +69,10 @@ sim::DriveDescription drive_with(const sim::EffectInfo& info) {
   return drive;
 }
 
-/// Simulates jogs under speed control with a bandwidth of 6 Hz.
+/// Simulates jogs under speed control with a bandwidth of 6 Hz. Slow jogs start slowly, so that a start shows the
+/// torque at which it breaks away.
 Record standard_run(const sim::DriveDescription& drive) {
-  constexpr double kBandwidth_Hz = 6.0, kJog_s = 0.45, kRest_s = 0.15, kAcceleration = 900.0;
+  constexpr double kBandwidth_Hz = 6.0, kJog_s = 0.45, kFast = 20.0, kAcceleration = 900.0, kSlowly = 30.0;
   constexpr std::uint64_t kSeed = 1;
   sim::Plant plant(drive, kSeed);
   const sim::DriveDescription rigid = *paper_drive("x");
@@ -83,7 +87,8 @@ Record standard_run(const sim::DriveDescription& drive) {
   double reference = 0.0;
   const auto run = [&](double target, double seconds) {
     for (int left = static_cast<int>(std::lround(seconds / period_s)); left > 0; --left) {
-      const double speed = plant.read_tachometer().value_or(0.0), step = kAcceleration * period_s;
+      const double speed = plant.read_tachometer().value_or(0.0);
+      const double step = (0.0 < std::abs(target) && std::abs(target) < kFast ? kSlowly : kAcceleration) * period_s;
       record.t_s.push_back(static_cast<double>(record.size()) * period_s);
       record.x.push_back(static_cast<double>(plant.encoder_counts()) * drive.data.encoder_resolution);
       record.w.push_back(speed);
@@ -95,10 +100,11 @@ Record standard_run(const sim::DriveDescription& drive) {
       plant.advance(period_s);
     }
   };
+  std::size_t rest = 0;
   for (const double speed : kJogs)
     for (const double direction : {1.0, -1.0}) {
       run(direction * speed, kJog_s);
-      run(0.0, kRest_s);
+      run(0.0, kRests_s[rest++ % kRests_s.size()]);
     }
   return record;
 }
@@ -176,6 +182,7 @@ EffectPicture picture_of(const sim::EffectInfo& info) {
       picture.plot = plain_plot(info, lacking, part_between(residuals.front().missing, residuals.back().missing));
     } else {
       picture.plot = effect_plot(found.front());
+      picture.explained = explained_share(found.front());
     }
   }
   picture.plot.large = false;

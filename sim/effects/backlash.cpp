@@ -56,6 +56,7 @@ const EffectInfo backlash{
         "After a reversal the motor moves freely over a fixed travel, then hits the load: the residual torque dips, "
         "then peaks. The travel is the same at any speed",
     .along = {"travel_since_reversal", "current"},
+    .view = View::moment,
     .confused_with = {"compliance", "presliding", "input_delay"},
     .separate_by =
         "Encoders on motor and table. Reversals under a bias load, which closes the gap: backlash disappears, and a "

@@ -50,6 +50,7 @@ const EffectInfo compliance{
         "Residual oscillates at one frequency after each change of torque, at any speed. Both inertias act below the "
         "resonance, only the motor's above it",
     .along = {"frequency", "acceleration"},
+    .view = View::moment,
     .confused_with = {"backlash", "presliding", "current_loop_lag", "tach_ripple"},
     .separate_by =
         "Swept sine with encoders on motor and table: the frequency of a resonance is constant, that of ripple follows "

@@ -29,6 +29,7 @@ const EffectInfo current_loop_lag{
                     .starts = {50, 150}}},
     .shows = "Residual torque is proportional to jerk: every step of the command is rounded",
     .along = {"acceleration", "frequency"},
+    .view = View::moment,
     .confused_with = {"input_delay", "tach_lag", "compliance", "inertia", "friction_lag"},
     .separate_by =
         "Log the motor current during a step at standstill: a lag rounds the rise, a dead time shifts it. In motion a "

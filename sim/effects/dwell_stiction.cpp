@@ -37,6 +37,7 @@ const EffectInfo dwell_stiction{
         "The first breakaway after a rest needs more torque; the excess grows with the length of the rest. Starts "
         "after short stops are not affected",
     .along = {"rest"},
+    .view = View::starts,
     .confused_with = {"stribeck", "thermal_friction_drift", "presliding", "position_dependent_friction"},
     .separate_by =
         "Rest 0.1, 1, 10 and 100 s at one place before the same slow ramp; change the ramp rate to rule out a lag",

@@ -31,6 +31,7 @@ const EffectInfo friction_lag{
         "Residual torque over speed forms a loop at low sliding speed, wider at higher frequency. Friction is higher "
         "during acceleration than during deceleration",
     .along = {"speed", "acceleration"},
+    .view = View::moment,
     .confused_with = {"input_delay", "presliding", "stribeck", "current_loop_lag"},
     .separate_by =
         "Sine on a bias speed without reversal, at several frequencies: the loop depends on time, not on travel. It is "

@@ -29,6 +29,7 @@ const EffectInfo input_delay{
         "Residual torque is proportional to jerk: everything is late by the same time; the correlation with the "
         "command peaks away from zero lag",
     .along = {"acceleration", "frequency"},
+    .view = View::moment,
     .confused_with = {"current_loop_lag", "tach_lag", "friction_lag", "inertia"},
     .separate_by =
         "Log the motor current during a step at standstill: a dead time shifts the rise, a lag rounds it. With a "

@@ -40,6 +40,7 @@ const EffectInfo presliding{
         "Residual torque depends on the travel since the last reversal and fades within micrometres at any speed. The "
         "axis springs back when the torque is removed",
     .along = {"travel_since_reversal"},
+    .view = View::moment,
     .confused_with = {"backlash", "compliance", "stribeck", "friction_lag"},
     .separate_by =
         "Triangular motion of a few micrometres at two rates and two amplitudes: presliding gives a loop that depends "
