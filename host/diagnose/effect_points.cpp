@@ -137,7 +137,7 @@ std::vector<Breakaway> starts_in(const sim::Drive& drive, const PreparedRecord& 
         start.broke = std::max(start.broke, pushing);
         if (k + unseen < efforts.size()) start.held = std::max(start.held, pushing);
       }
-      starts.push_back(std::move(start));
+      starts.push_back(start);
     }
     efforts.clear();
     begin = row + 1;
@@ -198,7 +198,7 @@ std::optional<EffectPoints> starts_of(const sim::DriveDescription& without, cons
       const double fresh = less.breakaway_effort(start.state, direction, start.t_s);
       const double rested = more.breakaway_effort(start.state, direction, start.t_s);
       if (start.broke - start.held > kWidest * fresh) continue;
-      all.emplace_back(std::move(start), std::array{fresh, rested});
+      all.emplace_back(start, std::array{fresh, rested});
     }
   }
   if (all.size() < kFewest) return {};
