@@ -37,8 +37,8 @@ const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kin
 
 /// Share of the squared error on held-back records that a candidate explains.
 double taken_by(const JudgedCandidate& candidate) {
-  const double kept = candidate.after / candidate.before;
-  return candidate.before > 0.0 ? 1.0 - kept * kept : 0.0;
+  const double before = candidate.before, after = candidate.after;
+  return before > 0.0 ? 1.0 - after * after / (before * before) : 0.0;
 }
 
 /// Whether an effect is present together with certain ones with a probability of at least kClaimed, and takes enough of

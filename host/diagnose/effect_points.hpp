@@ -16,7 +16,7 @@ struct EffectPoints {
   Axis x, y;
   bool logarithmic_x = false;
   std::vector<double> at, residual, part;
-  std::vector<double> lower, upper;  ///< range of each residual; empty if there is none
+  std::vector<double> lower, upper;  ///< range of each residual; empty if it is unknown
   std::vector<bool> forward;         ///< direction of the motion at each point
   TimePlot context = {};             ///< what was measured there, if the points are consecutive samples
 

@@ -40,12 +40,12 @@ bool promises_a_third(const Errors& base, const Errors& pair) {
          explained_share(base.validation, pair.validation) > kMost;
 }
 
-constexpr FitOptions kWithoutOne{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
+constexpr FitOptions kRefit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 
 sim::DriveDescription without(const sim::DriveDescription& model, const std::string& kind, const RecordSet& training) {
   sim::DriveDescription rest = model;
   std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
-  return fit_model(rest, training, kWithoutOne).model;
+  return fit_model(rest, training, kRefit).model;
 }
 
 /// While the axis slides, a constant force or an offset of the command is equivalent to a difference of friction
@@ -137,9 +137,9 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
         alone.effects.push_back(*whole.model.find(kept));
         kinds.push_back(kept);
       }
-      const FitResult one = fit_model(alone, sets.training, kWithoutOne);
+      const FitResult one = fit_model(alone, sets.training, kRefit);
       // The new effect still has the value that it had alone.
-      const FitResult two = fit_model(fit_model(exchanged, sets.training, kOwnSize).model, sets.training, kWithoutOne);
+      const FitResult two = fit_model(fit_model(exchanged, sets.training, kOwnSize).model, sets.training, kRefit);
       found.push_back(judged(kinds, (one.robust < two.robust ? one : two).model, sets.training, sets.validation));
     }
   }
@@ -157,8 +157,7 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
         model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
     if (second == model.effects.end() || second->has("load_friction")) continue;
     const auto fitted = [&](const sim::DriveDescription& start) {
-      return judged(candidate.kinds, fit_model(start, sets.training, kWithoutOne).model, sets.training,
-                    sets.validation);
+      return judged(candidate.kinds, fit_model(start, sets.training, kRefit).model, sets.training, sets.validation);
     };
     Candidate whole = fitted(model);
     second->parameters["load_friction"] = kStart;
@@ -171,9 +170,9 @@ void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets
   std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
 }
 
-/// Carries the fit of a candidate to its end, over its own noise floors. In the search it ended at a budget, over those
-/// of another model, which may hide an error: a period of cogging stayed 0.06 % off. A model that only becomes more
-/// uncertain, and predicts no better, is not taken.
+/// Continues the fit of a candidate until it converges, over its own noise floors. In the search the fit ended at its
+/// budget, over the noise floors of another model. Where those were high, the period of a cogging stayed 0.06 % off. A
+/// fit is taken only if log loss and squared error both fall, because larger noise floors alone can lower the log loss.
 void finish_fit(Candidate& candidate, const PreparedSets& sets) {
   constexpr int kMostRounds = 4;
   constexpr double kSettled = 0.005;  // of the log loss: half a percent of the error
@@ -181,7 +180,7 @@ void finish_fit(Candidate& candidate, const PreparedSets& sets) {
     RecordSet own = sets.training;
     renew_floors(own, candidate.model);
     Candidate again =
-        judged(candidate.kinds, fit_model(candidate.model, own, kWithoutOne).model, sets.training, sets.validation);
+        judged(candidate.kinds, fit_model(candidate.model, own, kRefit).model, sets.training, sets.validation);
     const double gain = candidate.training.log_loss - again.training.log_loss;
     if (gain <= 0.0 || again.training.combined > candidate.training.combined) break;
     candidate = std::move(again);
@@ -208,8 +207,7 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
     gap->parameters["damping_ratio"] = sim::find_effect("compliance")->parameter("damping_ratio")->starts.front();
     std::vector<std::string> kinds = candidate.kinds;
     std::ranges::replace(kinds, "backlash", "compliance");
-    springs.push_back(
-        judged(kinds, fit_model(model, sets.training, kWithoutOne).model, sets.training, sets.validation));
+    springs.push_back(judged(kinds, fit_model(model, sets.training, kRefit).model, sets.training, sets.validation));
     return is_unseen || springs.back().log_loss() <= candidate.log_loss() + kHardly;
   });
   if (springs.empty()) return;
