@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "host/diagnose/base_fit.hpp"
 #include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/diagnose/visibility.hpp"

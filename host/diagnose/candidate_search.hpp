@@ -44,8 +44,8 @@ struct SearchEffort {
 };
 
 /// Fits `model` with each applicable effect added. `kinds`: effects that the model already has beyond the base.
-/// Candidates that gain nothing on a few windows are not fitted further. The result is sorted by remaining error, best
-/// first.
+/// Candidates that gain nothing on a few windows are not fitted further. Effects that need many small steps are left
+/// out if another one explains the records and is not confused with them. The result is sorted by log loss, best first.
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
                                          const ShareDone& progress = {}, const SearchEffort& effort = {});
@@ -59,8 +59,5 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
 /// A fitted model with its errors on both sets.
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model, const RecordSet& training,
                  const RecordSet& validation);
-
-/// Fits the base from several starts, because a refit stuck in a local minimum causes false discoveries.
-sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training);
 
 }  // namespace host

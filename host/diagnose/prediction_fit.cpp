@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/base_fit.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"

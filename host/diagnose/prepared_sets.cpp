@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/base_fit.hpp"
 
 namespace host {
 

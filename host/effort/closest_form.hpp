@@ -8,9 +8,15 @@
 
 namespace host {
 
-/// The form with the smallest training residual, found by repeated steps to the best neighbour of `term`, which must
-/// have neighbours. `model` becomes the fitted drive.
-EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
-                        const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model);
+/// A form of an effect and the drive that is fitted with it.
+struct FittedForm {
+  EffortTerm term;
+  ScreenedModel model;
+};
+
+/// The form with the smallest training residual, found by repeated steps to a better neighbour, from each of the starts
+/// at the same time. All starts have neighbours and are of one kind; there is at least one.
+FittedForm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
+                        const std::vector<EffortTerm>& chosen, std::vector<FittedForm> starts);
 
 }  // namespace host

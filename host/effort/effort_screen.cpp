@@ -54,16 +54,12 @@ class Search {
   bool with_closest(NextEffect& effect, ScreenedModel& out) const {
     if (!with(effect.term, out)) return false;
     if (!effect.term.neighbours) return true;
-    effect.term = closest_form(regression_, base_, chosen_, std::move(effect.term), out);
-    for (EffortTerm& start : effect.others) {
-      ScreenedModel tried;
-      if (!with(start, tried)) continue;
-      EffortTerm refined = closest_form(regression_, base_, chosen_, std::move(start), tried);
-      if (tried.train >= out.train) continue;
-      out = std::move(tried);
-      effect.term = std::move(refined);
-    }
-    effect.others.clear();
+    std::vector<FittedForm> starts{{std::move(effect.term), std::move(out)}};
+    for (EffortTerm& other : std::exchange(effect.others, {}))
+      if (ScreenedModel tried; with(other, tried)) starts.push_back({std::move(other), std::move(tried)});
+    FittedForm closest = closest_form(regression_, base_, chosen_, std::move(starts));
+    effect.term = std::move(closest.term);
+    out = std::move(closest.model);
     return !effect.term.is_itself || effect.term.is_itself(out.model);
   }
 
@@ -414,9 +410,8 @@ class Search {
   void drop_what_nothing_followed() {
     if (to_be_followed_.empty()) return;
     std::vector<EffortTerm> others;
-    std::optional<ScreenedModel> left = without(to_be_followed_, others);
-    if (!left) return;
-    drop(to_be_followed_, std::move(others), *std::move(left));
+    if (std::optional<ScreenedModel> left = without(to_be_followed_, others))
+      drop(to_be_followed_, std::move(others), *std::move(left));
   }
 
   /// An effect that was found early may have stood for two effects that were found later.

@@ -66,8 +66,10 @@ EffortTerm stribeck_term(bool by_direction, const EffortRows& rows, double fadin
   const VectorXd shape = (-rows.w.array().abs() / fading).exp();
   EffortTerm term{"stribeck", {}, {}, {}, {}};
   term.neighbours = [by_direction, &rows, fading](double part) {
-    return std::vector<EffortTerm>{stribeck_term(by_direction, rows, fading * (1.0 + part)),
-                                   stribeck_term(by_direction, rows, fading * (1.0 - part))};
+    const auto with = [&](double factor) {
+      return [by_direction, &rows, other = fading * factor] { return stribeck_term(by_direction, rows, other); };
+    };
+    return std::vector<std::function<EffortTerm()>>{with(1.0 + part), with(1.0 - part)};
   };
   if (by_direction) {
     term.columns.resize(rows.w.size(), 2);
@@ -101,8 +103,9 @@ EffortTerm spring_term(const EffortRows& rows, double centre) {
       });
   term.neighbours = [&rows, centre](double part) {
     const double low = rows.x.minCoeff(), high = rows.x.maxCoeff(), step = part * (high - low);
-    return std::vector<EffortTerm>{spring_term(rows, std::min(centre + step, high)),
-                                   spring_term(rows, std::max(centre - step, low))};
+    const auto around = [&](double other) { return [&rows, other] { return spring_term(rows, other); }; };
+    return std::vector<std::function<EffortTerm()>>{around(std::min(centre + step, high)),
+                                                    around(std::max(centre - step, low))};
   };
   return term;
 }
@@ -134,8 +137,10 @@ EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRo
            append(fitted, "current_saturation", {{"limit", limit / per_ampere}});
   };
   term.neighbours = [model, &rows, limit](double part) {
-    return std::vector<EffortTerm>{current_limit_term(model, rows, limit * (1.0 + part)),
-                                   current_limit_term(model, rows, limit * (1.0 - part))};
+    const auto with = [&](double factor) {
+      return [model, &rows, other = limit * factor] { return current_limit_term(model, rows, other); };
+    };
+    return std::vector<std::function<EffortTerm()>>{with(1.0 + part), with(1.0 - part)};
   };
   return term;
 }

@@ -20,9 +20,9 @@ struct EffortTerm {
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
   std::string words;        ///< "orders 72, 18 of 6.283 mm"; may be empty
   bool can_repeat = false;  ///< a drive may have several of them: waves with other periods
-  /// Similar forms, whose shape differs by this part. Empty if the forms that are tried are close enough. Refers to the
-  /// rows.
-  std::function<std::vector<EffortTerm>(double part)> neighbours{};
+  /// Makers of similar forms, whose shape differs by this part. Empty if the forms that are tried are close enough.
+  /// Refers to the rows.
+  std::function<std::vector<std::function<EffortTerm()>>(double part)> neighbours{};
   /// Whether the closest form is this effect and does not stand in for another. If empty, it always is.
   std::function<bool(const sim::DriveDescription& fitted)> is_itself{};
   /// The effect of another kind that these rows cannot tell from this form: for a gap that the encoder hardly resolves,

@@ -150,10 +150,13 @@ EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows,
   if (wave.period == turn_of(model.data)) return term;
   term.neighbours = [&model, &rows, kind, columns_of, wave](double part) {
     constexpr double kWaves = 8.0;  // the largest part is a quarter of a wave over the travel
-    std::vector<EffortTerm> around;
+    std::vector<std::function<EffortTerm()>> around;
     for (const double sign : {-1.0, 1.0}) {
       const double factor = 1.0 + sign * kWaves * part * wave.period / travel_of(rows);
-      if (factor > 0.5) around.push_back(wave_term(model, rows, kind, columns_of, {factor * wave.period, wave.order}));
+      if (factor > 0.5)
+        around.push_back([&model, &rows, kind, columns_of, other = Wave{factor * wave.period, wave.order}] {
+          return wave_term(model, rows, kind, columns_of, other);
+        });
     }
     return around;
   };

@@ -128,7 +128,7 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
       return term_of(rows, spring, unit);
     };
   term.neighbours = [&rows, load, unit](double part) {
-    std::vector<EffortTerm> around;
+    std::vector<std::function<EffortTerm()>> around;
     // Damping and friction are much less visible than the frequency; with a gap, the frequency is also hardly visible.
     constexpr double kCoarser = 6.0;
     for (const double sign : {-1.0, 1.0}) {
@@ -136,7 +136,7 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
       const auto moved = [&](double Load::*parameter, double factor) {
         Load other = load;
         other.*parameter *= factor;
-        if (other.gap >= load.least_gap) around.push_back(term_of(rows, other, unit));
+        if (other.gap >= load.least_gap) around.push_back([&rows, other, unit] { return term_of(rows, other, unit); });
       };
       if (load.gap > 0.0) moved(&Load::gap, fine);
       moved(&Load::resonance_Hz, load.gap > 0.0 ? coarse : fine);

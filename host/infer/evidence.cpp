@@ -152,7 +152,9 @@ EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& column
                                double give_up) const {
   EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
-  start.sizes = no_memory();
+  const VectorXd none = no_memory();
+  if ((before.sizes.array() <= none.array()).all()) return same;
+  start.sizes = none;
   EvidenceFit small = fit(columns, deviations, start);
   return same.log_evidence > small.log_evidence ? same : small;
 }

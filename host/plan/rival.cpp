@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "host/diagnose/base_fit.hpp"
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/exit_codes.hpp"

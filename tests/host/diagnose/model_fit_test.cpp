@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/base_fit.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 

@@ -1,0 +1,60 @@
+// Starts of the fits of an effect: from the catalogue, a scan or the force balance.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/diagnose/model_fit.hpp"
+#include "host/effort/effort_screen.hpp"
+#include "sim/effect.hpp"
+
+namespace host {
+
+/// A candidate gets a serious fit only if its first fit lowers the training error to this share.
+inline constexpr double kPromise = 0.98;
+
+/// A base with an effect as its last one.
+struct Start {
+  const sim::EffectInfo* info;
+  sim::DriveDescription model;
+  double error = HUGE_VAL;                         ///< error relative to the base's
+  bool scanned = false;                            ///< the best of many starts, found by a scan
+  bool balanced = false;                           ///< fitted by the force balance
+  bool cut_short = false;                          ///< a fit ended at its budget
+  sim::EffectEntry effect = model.effects.back();  ///< before any fit
+
+  /// Takes over the result of a fit.
+  void take(const FitResult& fit) {
+    model = fit.model;
+    cut_short = cut_short || fit.cut_short;
+  }
+};
+
+/// Noise floors depend on the model that propagates the uncertainty of a restart. A model with presliding, a second
+/// mass or a gap propagates it differently from the base, so such a candidate and the base are compared over the
+/// candidate's own noise floors. It also needs many small integration steps.
+bool needs_own_floors(const sim::DriveDescription& model);
+
+/// The set with the noise floors over which a model is compared.
+RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared);
+
+/// Fits a start on a set and stores its error relative to the base.
+void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
+               const FitOptions& options);
+
+/// The starts from which an effect is fitted: those with many parameters are scanned and only the best remain, perhaps
+/// none. Each way to share friction between motor and load is scanned separately, so that each is fitted.
+std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set);
+
+/// A model that contains the base cannot be worse than the base. So if all fits of an effect are worse, it starts again
+/// from the present base. Each of these starts begins with other values.
+std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base);
+
+/// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
+/// has not taken over the part of the effect, as one may that was fitted to the motion without it.
+std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,
+                                                    const sim::EffectInfo& info);
+
+}  // namespace host
