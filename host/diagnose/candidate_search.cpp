@@ -40,6 +40,9 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 
 namespace {
 
+/// A candidate gets a serious fit only if its first fit lowers the training error to this share.
+constexpr double kPromise = 0.98;
+
 /// Candidates with an error of more than this multiple of the best one after the first look: only a few get a serious
 /// fit, and none of those that need many small integration steps.
 constexpr double kOutOfSight = 2.0;
@@ -246,16 +249,13 @@ class KindSearch {
           start && !needs_own_floors(*start))
         starts.push_back({.info = &info, .model = *std::move(start), .balanced = true});
     }
-    const auto fit_own_size = [&](Start& start) { start.model = fit_model(start.model, coarse_, kOwnSize).model; };
+    // The base was fitted without the effect and would suppress it. So its size is fitted first, alone.
     for_each_in_parallel(starts.size(), [&](std::size_t k) {
-      if (starts[k].info->periodic) fit_own_size(starts[k]);
+      if (!starts[k].scanned && !starts[k].balanced) fit_own_size(starts[k], model_, coarse_, budgeted(kFirstLook));
     });
-    fit_all(starts, coarse_, budgeted(kFirstLook), coarse_error_, progress);
-    std::vector<Start> lost = lost_starts(starts, model_);
-    for_each_in_parallel(lost.size(), [&](std::size_t k) { fit_own_size(lost[k]); });
-    fit_all(lost, coarse_, budgeted(kFirstLook), coarse_error_, {});
-    std::ranges::move(lost, std::back_inserter(starts));
     std::ranges::stable_sort(starts, {}, &Start::error);
+    keep_best(starts);
+    fit_all(starts, coarse_, budgeted(kFirstLook), coarse_error_, progress);
     std::vector<Start> entrants = promising(starts);
     fit_all(entrants, medium_, budgeted(kSeriousFit), medium_error_, {});
     std::ranges::move(starts, std::back_inserter(starts_));

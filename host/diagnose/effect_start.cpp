@@ -4,7 +4,6 @@
 #include <iterator>
 #include <utility>
 
-#include "host/diagnose/claim.hpp"
 #include "host/diagnose/fit_budget.hpp"
 #include "host/diagnose/pattern_search.hpp"
 
@@ -60,21 +59,11 @@ void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const R
   std::ranges::stable_sort(starts, {}, &Start::error);
   starts.resize(kBestOfScan, starts.front());
   std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
-  for (Start& start : starts)
+  for (Start& start : starts) {
     start.model = pattern_search(start.model, suited_to(start.model, affordable(set, start.model, kSeriousFit)),
                                  kSeriousFit.most_steps);
-}
-
-/// Keeps the first of several starts that begin with the same values.
-void drop_same(std::vector<Start>& starts) {
-  std::vector<Start> kept;
-  for (Start& start : starts)
-    if (std::ranges::none_of(kept, [&](const Start& other) {
-          const sim::EffectEntry &a = start.model.effects.back(), &b = other.model.effects.back();
-          return a.kind == b.kind && a.parameters.size() == b.parameters.size() && !has_moved(a, b);
-        }))
-      kept.push_back(std::move(start));
-  starts = std::move(kept);
+    start.error = left_at(start.model, base, set);
+  }
 }
 
 }  // namespace
@@ -99,21 +88,29 @@ std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDes
   return chosen;
 }
 
-std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base) {
-  std::vector<Start> lost;
-  for (const Start& start : looked_at) {
-    const auto is_promising = [&start](const Start& other) {
-      return other.info == start.info && other.error <= kPromise;
-    };
-    if (start.scanned || start.info->periodic || needs_own_floors(start.model) ||
-        std::ranges::any_of(looked_at, is_promising))
-      continue;
-    lost.push_back(start);
-    lost.back().model = base;
-    lost.back().model.effects.push_back(start.effect);
+void fit_own_size(Start& start, const sim::DriveDescription& base, const RecordSet& shared, const FitOptions& budget) {
+  const RecordSet own = suited_to(start.model, affordable(shared, start.model, budget));
+  const FitResult fit = fit_model(start.model, own, kOwnSize);
+  start.take(fit);
+  start.error = fit.robust / error_of(sim::Drive(base), own).robust;
+}
+
+void keep_best(std::vector<Start>& starts) {
+  constexpr std::ptrdiff_t kBest = 2;
+  const auto way_of = [](const Start& start) {
+    return start.effect.has("load_friction") ? start.effect.at("load_friction") : 1.0;
+  };
+  std::vector<Start> kept;
+  for (Start& start : starts) {
+    std::ptrdiff_t ahead = 0, ahead_by_this_way = 0;
+    for (const Start& other : kept) {
+      if (other.info != start.info || other.balanced) continue;
+      ++ahead;
+      if (way_of(other) == way_of(start)) ++ahead_by_this_way;
+    }
+    if (start.balanced || ahead < kBest || ahead_by_this_way == 0) kept.push_back(std::move(start));
   }
-  drop_same(lost);
-  return lost;
+  starts = std::move(kept);
 }
 
 std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,

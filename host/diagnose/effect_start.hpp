@@ -12,9 +12,6 @@
 
 namespace host {
 
-/// A candidate gets a serious fit only if its first fit lowers the training error to this share.
-inline constexpr double kPromise = 0.98;
-
 /// A base with an effect as its last one.
 struct Start {
   const sim::EffectInfo* info;
@@ -48,9 +45,14 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
 /// none. Each way to share friction between motor and load is scanned separately, so that each is fitted.
 std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set);
 
-/// A model that contains the base cannot be worse than the base. So if all fits of an effect are worse, it starts again
-/// from the present base. Each of these starts begins with other values.
-std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base);
+/// Fits the parameters of the effect alone, with at most the windows that `budget` allows, and stores the error
+/// relative to the base. A model that contains the base cannot be worse than the base, but a fit of all parameters may
+/// end there.
+void fit_own_size(Start& start, const sim::DriveDescription& base, const RecordSet& shared, const FitOptions& budget);
+
+/// Keeps the two best starts of each effect, and the best one of each way to share friction between motor and load.
+/// Starts of the force balance do not count. `starts`: in the order of their errors.
+void keep_best(std::vector<Start>& starts);
 
 /// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
 /// has not taken over the part of the effect, as one may that was fitted to the motion without it.
