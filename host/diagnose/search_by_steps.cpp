@@ -248,6 +248,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
         search_candidates(model, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
     split_friction(candidates, sets);
     compare_with_springs(candidates, sets);
+    if (!kinds.empty()) add_exchanged(candidates, found.singles, sets);
     if (const auto best = std::ranges::find_if(candidates, physical); best != candidates.end()) finish_fit(*best, sets);
     std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
     return candidates;
@@ -268,7 +269,6 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto single = std::ranges::find_if(found.singles, physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = search(single->model, single->kinds, 0.5, 0.8);
-  add_exchanged(found.pairs, found.singles, sets);
   const auto pair = std::ranges::find_if(found.pairs, physical);
   if (pair == found.pairs.end()) return found;
   renew(pair->model);
@@ -285,7 +285,6 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   }
   if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
   found.triples = search(pair->model, pair->kinds, 0.8, 1.0);
-  add_exchanged(found.triples, found.singles, sets);
   const auto triple = std::ranges::find_if(found.triples, physical);
   if (triple == found.triples.end()) return found;
   std::ranges::move(without_what_is_needless(*triple, sets), std::back_inserter(found.triples));
