@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """axistool circle on machines of an independent simulation: two axes with loops, friction, play and geometry, one to
-three causes each, with and without a ballbar. Prints the seeds. The argument is the number of machines (60 for the
-figures in MEASURED)."""
+three causes each, with and without a ballbar. Prints the seeds. Arguments: number of machines (60 for the figures in
+MEASURED), first seed (default 1)."""
 
 import json
 import math
@@ -225,9 +225,9 @@ def trial(seed: int, folder: Path) -> dict[str, object]:
 
 
 def main() -> int:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    count, first = (int(given or default) for given, default in zip((sys.argv[1:] + [""] * 2)[:2], (10, 1)))
     with tempfile.TemporaryDirectory() as folder:
-        all_of = [trial(seed, Path(folder)) for seed in range(1, count + 1)]
+        all_of = [trial(seed, Path(folder)) for seed in range(first, first + count)]
     right = sum(one["right"] for one in all_of)
     sized, sizes = sum(one["sized"] for one in all_of), sum(one["sizes"] for one in all_of)
     said = [pair for one in all_of for pair in one["said"]]

@@ -127,6 +127,18 @@ TEST_F(TunedEstimator, UsesTheLargerNoiseOfRestAndMotion) {
   }
 }
 
+/// Catches an Rw without the noise at rest where no powered record shows a rest.
+TEST_F(TunedEstimator, TakesTheNoiseOfTheDisabledAxisIfThePoweredOneNeverRests) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  board_.machine->resting_deviation = 0.3;
+  host::look(*session_);
+  host::tune_estimator(*session_);
+  const json found = folder_.read_json("estimator.json")["tachometer_variance"];
+  EXPECT_EQ(found["from"]["at_rest"], json::array({"standstill.csv"}));
+  EXPECT_NEAR(found["at_rest"], 0.09, 0.15 * 0.09);
+  EXPECT_EQ(found["used"], found["at_rest"]);
+}
+
 /// The rows in which a reference moves forward at constant speed, without the first part, in which the loop settles.
 std::pair<std::size_t, std::size_t> steady_rows(const host::Record& run) {
   std::size_t begin = 0, best = 0, from = 0;
