@@ -17,9 +17,10 @@ RADIUS, PERIOD, SUBSTEPS = 40.0, 1e-3, 2
 STEP = PERIOD / SUBSTEPS
 ENCODER = 0.5e-3  # mm
 FEEDS = (40.0, 120.0)
+TOP_ACCELERATION = FEEDS[1] ** 2 / RADIUS
 MOTOR = ("servo_mismatch", "reversal_spike x", "reversal_spike y", "torque_ripple x", "torque_ripple y", "vibration x",
          "vibration y")
-TABLE = ("squareness", "scale_mismatch", "backlash x", "backlash y", "lateral_play x", "lateral_play y",
+TABLE = ("squareness", "scale_mismatch", "coupling", "backlash x", "backlash y", "lateral_play x", "lateral_play y",
          "straightness x", "straightness y", "cyclic_error x", "cyclic_error y")
 
 
@@ -90,8 +91,11 @@ def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict
     side = {"x": 0.0, "y": 0.0}
     xs, ys = [], []
     last = dict(seat)
+    speed = 0.0  # of x
     for k in range(len(PATH)):
         at = {"x": motor["x"][k], "y": motor["y"][k]}
+        pull = (at["x"] - last["x"]) / STEP - speed
+        speed += pull
         moved = {}
         for axis in "xy":
             gap = causes.get(f"backlash {axis}", 0.0) / 2.0
@@ -111,6 +115,7 @@ def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict
             else:
                 y += wave
                 x += bow + play
+        y += causes.get("coupling", 0.0) * pull / STEP / TOP_ACCELERATION
         x += causes.get("squareness", 0.0) * at["y"] / RADIUS
         x += causes.get("scale_mismatch", 0.0) * at["x"] / RADIUS
         xs.append(x)
@@ -139,6 +144,7 @@ def draw_machine(seed: int) -> tuple[dict[str, float], dict[str, float], bool]:
                         "vibration": lambda: dice.uniform(60.0, 200.0),
                         "straightness": lambda: sign * dice.uniform(4e-3, 15e-3),
                         "backlash": lambda: dice.uniform(2e-3, 12e-3),
+                        "coupling": lambda: sign * dice.uniform(3e-3, 8e-3),
                         "lateral_play": lambda: dice.uniform(3e-3, 10e-3),
                         "cyclic_error": lambda: dice.uniform(1e-3, 4e-3)}.get(
                             kind, lambda: sign * dice.uniform(3e-3, 15e-3))()
