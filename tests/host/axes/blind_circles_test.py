@@ -175,7 +175,7 @@ def turning_rows() -> list[int]:
     steady = 0
     for k in range(1, len(PATH)):
         feed = abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS
-        steady = steady + 1 if any(abs(feed / one - 1.0) < 0.01 for one in FEEDS) else 0
+        steady = steady + 1 if any(abs(feed / one - 1.0) < 1e-5 for one in FEEDS) else 0
         if steady > 0.15 / STEP:
             rows.append(k)
     return rows
