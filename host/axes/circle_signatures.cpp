@@ -181,6 +181,13 @@ void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
       with_amount(outer("squareness", "xy", twice([](double a) { return std::sin(a); })), 1e3 / radius, "um/m"));
   list.push_back(
       with_amount(outer("scale_mismatch", "xy", twice([](double a) { return std::cos(a); })), 1e3 / radius, "ppm"));
+  // Equal to squareness at one feed; both axes' coupling gives one circle. As likely as a delay between the axes.
+  const double acceleration_mm_s2 = most(rows.passes(), acceleration_of);
+  CircleCause coupling = outer("coupling", "xy", [=](const CirclePass& pass, std::size_t k) {
+    return -0.5 * acceleration_of(pass) / acceleration_mm_s2 * std::sin(2.0 * pass.angle_rad[k]);
+  });
+  coupling.log_prior = -std::log(9.0);
+  list.push_back(with_amount(coupling, 1e3 / acceleration_mm_s2, "um/(m/s2)"));
   for (const char axis : {'x', 'y'}) {
     const std::string name{axis};
     list.push_back(outer("backlash", name, [axis](const CirclePass& pass, std::size_t k) {
@@ -322,7 +329,7 @@ std::vector<Unseen> unseen_causes(const CircleRows& rows) {
     const char* why =
         "the motors' encoders do not see the table: use a ballbar (radius_mm) or scales at the table (x2_mm, y2_mm)";
     for (const char* kind :
-         {"squareness", "scale_mismatch", "backlash", "lateral_play", "straightness", "cyclic_error"})
+         {"squareness", "scale_mismatch", "coupling", "backlash", "lateral_play", "straightness", "cyclic_error"})
       list.push_back({kind, why});
   } else if (!has_both_directions(rows.passes())) {
     list.push_back({"lateral_play", "it differs by direction: record the circle clockwise and counter-clockwise"});
@@ -352,6 +359,10 @@ CauseText cause_text(const std::string& kind) {
        {"The axes are not square: an ellipse at 45 degrees, the same in both directions", "align the axes"}},
       {"scale_mismatch",
        {"The axes' scales differ: an ellipse along the axes at any feed", "correct lead or scale of one axis"}},
+      {"coupling",
+       {"The acceleration of one axis displaces the other: an ellipse at 45 degrees that grows with the square of the "
+        "feed, the same in both directions",
+        "stiffen guides and frame, or lower limits.acceleration"}},
       {"backlash",
        {"The table does not move over this gap after a reversal: steps at the quadrants",
         "backlash compensation (backlash.* parameters), or preload, nut and bearings"}},

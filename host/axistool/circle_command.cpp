@@ -151,15 +151,12 @@ void add_circle(CLI::App& app) {
       "  axistool circle -o circles --radius 20 --feeds 20,80 --report circle.html   # made by a board\n"
       "Records: the file of `run --capture` (x_mm, x_ref_mm, y_mm, y_ref_mm in one), or those of `hil circle -o` (one\n"
       "for each axis, paired in order). Every turn at a steady feed counts, in either direction; a record may hold\n"
-      "several. Give both directions at two feeds. Sensors at the table: columns x2_mm and y2_mm (scales, grid "
-      "encoder),\n"
-      "or a ballbar's radius_mm (its length or its deviation; radius_um likewise). Without one, squareness, scales,\n"
-      "backlash, play and straightness are listed as not observable. Without records, a board makes three turns each "
-      "way\n"
-      "at every feed from where its axes stand, about a centre on the positive side of x. Exit code 8: no whole turn "
-      "at "
-      "a\n"
-      "steady feed, or a circle beyond the axes' limits.");
+      "several. Give both directions at two feeds; `hil ballbar -o` simulates them. Sensors at the table: columns\n"
+      "x2_mm and y2_mm (scales, grid encoder), or a ballbar's radius_mm (its length or its deviation; radius_um\n"
+      "likewise). Without one, squareness, scales, coupling, backlash, play and straightness are listed as not\n"
+      "observable. Without records, a board makes three turns each way at every feed from where its axes stand, about\n"
+      "a centre on the positive side of x. Exit code 8: no whole turn at a steady feed, or a circle beyond the axes'\n"
+      "limits.");
   command->callback([arguments] { run(*arguments); });
 }
 

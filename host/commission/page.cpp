@@ -10,6 +10,7 @@
 #include "host/compare/residual_figures.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/report.hpp"
 #include "host/report/text_format.hpp"
@@ -210,9 +211,8 @@ Table steps_table(const Page& page) {
     // The explanation is at the top, or on the page of the diagnosis.
     if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
       said.erase(at, explanation.size());
-    // The reason stands with the plot.
     if (step["name"] == "estimator" && page.state.value("estimator", nlohmann::json()).is_object())
-      said.erase(0, std::min(said.find(". "), said.size() - 2) + 2);
+      said = "The tests are described above.";
     if (step["name"] == "compensate" && page.is_new() && page.has_after()) said = "The figures are above.";
     table.rows.push_back({step["name"], said, files_in_words(step["files"].get<std::vector<std::string>>())});
   }
@@ -276,6 +276,21 @@ Table estimator_table(const nlohmann::json& tests) {
   return table;
 }
 
+Table tachometer_table(const nlohmann::json& variance, sim::DriveKind kind) {
+  Table table;
+  table.title = "The tachometer's own noise";
+  table.caption = "Rw is the larger of both variances, because the noise changes between measurements.";
+  table.headings = {"state of the axis", fmt::format("variance, ({})²", units_of(kind).speed), "records"};
+  const nlohmann::json from = variance.value("from", nlohmann::json::object());
+  for (const auto& [key, state] : {std::pair{"at_rest", "at rest"}, {"moving", "in motion"}}) {
+    const nlohmann::json& value = variance[key];
+    table.rows.push_back({state, value.is_null() ? "–" : format_value(value.get<double>()),
+                          files_in_words(from.value(key, std::vector<std::string>{}))});
+  }
+  table.rows.push_back({"used as Rw", format_value(variance["used"].get<double>()), ""});
+  return table;
+}
+
 void add_estimator(Report& report, const Page& page) {
   if (!page.state.value("estimator", nlohmann::json()).is_object()) return;
   const nlohmann::json tests = page.session.folder().read_json("estimator.json");
@@ -297,6 +312,8 @@ void add_estimator(Report& report, const Page& page) {
                : "In the last comparison it gained nothing, or made the axis softer: it is not on the board."));
   report.add(estimator_plot(tests));
   report.add(estimator_table(tests));
+  if (tests.contains("tachometer_variance"))
+    report.add(tachometer_table(tests["tachometer_variance"], page.session.options().sheet.data.kind));
 }
 
 Table pages_table(const Page& page) {

@@ -1,5 +1,6 @@
 // Tries five disturbance variances of the estimator on the machine (Erkorkmaz & Altintas 2001, p. 1503).
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -22,12 +23,30 @@ constexpr std::array kFactors = {0.01, 0.1, 1.0, 10.0, 100.0};  // of the first 
 constexpr double kRuns = 2.0 * static_cast<double>(kFactors.size());
 constexpr const char* kFile = "estimator.json";
 
+constexpr const char* kMovingFile = "ladder-fast.csv";
+
 /// Variance of the tachometer, (rad/s)^2 ((m/s)^2). It changes between measurements; the design uses the larger value
 /// (p. 1503).
 struct TachometerNoise {
-  std::optional<double> at_rest;  ///< eq. (46); empty if no record shows a rest
-  double moving = 0.0;
+  std::optional<double>
+      at_rest;  ///< eq. (46); of the disabled axis if the powered one never rests; empty if no record shows a rest
+  std::vector<std::string> rest_files;  ///< records that show one
+  double moving = 0.0;                  ///< from kMovingFile
   double used() const { return std::max(at_rest.value_or(0.0), moving); }
+
+  nlohmann::json json() const {
+    return {{"at_rest", at_rest ? nlohmann::json(*at_rest) : nlohmann::json()},
+            {"moving", moving},
+            {"used", used()},
+            {"from", {{"at_rest", rest_files}, {"moving", nlohmann::json::array({kMovingFile})}}}};
+  }
+
+  std::string sentence(sim::DriveKind kind) const {
+    const std::string why = at_rest ? fmt::format("the larger of {:.2g} in motion ({}) and {:.2g} at rest ({})", moving,
+                                                  kMovingFile, *at_rest, fmt::join(rest_files, ", "))
+                                    : fmt::format("as in motion ({}); no record shows a rest", kMovingFile);
+    return fmt::format(" Rw, the tachometer's variance, is {:.2g} ({})², {}.", used(), units_of(kind).speed, why);
+  }
 };
 
 class EstimatorStep {
@@ -56,18 +75,14 @@ class EstimatorStep {
                                  session_.options().force_N, session_.feedback_V() / kDeviations};
     const EstimatorChoice choice = choose_estimator(tests_, demand);
     nlohmann::json document = tracking_json(tests_, demand, choice);
-    if (noise)
-      document["tachometer_variance"] = {
-          {"at_rest", noise->at_rest ? nlohmann::json(*noise->at_rest) : nlohmann::json()},
-          {"moving", noise->moving},
-          {"used", noise->used()}};
+    if (noise) document["tachometer_variance"] = noise->json();
     folder_.write_json(kFile, document);
     files_.emplace_back(kFile);
     if (choice.value)
       folder_.put("estimator",
                   {{"rwd_V2", tests_[*choice.value].disturbance_variance},
                    {"rw", options_.tach_variance ? nlohmann::json(*options_.tach_variance) : nlohmann::json()}});
-    return {files_, choice.why + "." + (noise ? sentence(*noise) : "")};
+    return {files_, choice.why + "." + (noise ? noise->sentence(model_.data.kind) : "")};
   }
 
  private:
@@ -91,20 +106,25 @@ class EstimatorStep {
 
   std::optional<TachometerNoise> tachometer_noise() const {
     if (!model_.data.tach_noise_variance) return std::nullopt;
+    TachometerNoise noise;
     std::vector<Record> resting;
-    for (const char* file : {"steps.csv", "dwell.csv"})
-      if (folder_.has(file)) resting.push_back(read_record(folder_.path(file)));
-    const Record jog = read_record(folder_.require("ladder-fast.csv", "ladder"));
+    const auto add = [&](const char* file) {
+      if (!folder_.has(file)) return;
+      Record record = read_record(folder_.path(file));
+      if (!standstill_variance({record}, model_.data)) return;
+      resting.push_back(std::move(record));
+      noise.rest_files.emplace_back(file);
+    };
+    add("steps.csv");
+    add("dwell.csv");
+    if (resting.empty()) add("standstill.csv");  // a fine encoder shows motion wherever feedback acts
+    const Record jog = read_record(folder_.require(kMovingFile, "ladder"));
     const MovingRows rows = moving_rows(jog);
     const auto moving = moving_variance(jog, rows.begin, rows.end - rows.begin, model_);
     if (!moving) return std::nullopt;
-    return TachometerNoise{standstill_variance(resting, model_.data), *moving};
-  }
-
-  std::string sentence(const TachometerNoise& noise) const {
-    const char* speed = units_of(model_.data.kind).speed;
-    return fmt::format(" The tachometer's variance is {:.2g} ({})² in motion{}; the larger is used.", noise.moving,
-                       speed, noise.at_rest ? fmt::format(" and {:.2g} at rest", *noise.at_rest) : "");
+    noise.at_rest = standstill_variance(resting, model_.data);
+    noise.moving = *moving;
+    return noise;
   }
 
   TrackingTest test(double disturbance_variance) {

@@ -12,6 +12,7 @@
 #include "host/hil/injection.hpp"
 #include "host/hil/path.hpp"
 #include "host/parameters/axis_parameters.hpp"
+#include "sim/crossed_table.hpp"
 
 namespace host {
 
@@ -84,6 +85,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   double duration_s = 1.0;
   std::array<ScenarioAxis, hal::kAxisCount> axes;
+  sim::CrossedTableErrors table;
+  std::optional<sim::BallbarSetting> ballbar;  ///< measures the table: channel radius_mm of x's record
   std::vector<ScenarioMove> moves;
   std::vector<ScenarioFault> faults;
   std::vector<Expectation> expectations;

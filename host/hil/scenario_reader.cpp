@@ -42,6 +42,7 @@ class ScenarioReader {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) read_axis(top, i);
     if (scenario_.axes[0].drive.data.sample_period_s != scenario_.axes[1].drive.data.sample_period_s)
       top.fail("y", "both axes of a board have one sample period; give their drives the same");
+    read_table(top);
     for (const toml::table* table : top.tables("move")) read_move(*table);
     for (const toml::table* table : top.tables("fault")) read_fault(*table);
     for (const toml::table* table : top.tables("expect")) read_expectation(*table);
@@ -112,6 +113,40 @@ class ScenarioReader {
     from.refuse_rest();
   }
 
+  static double within(TomlFields& from, std::string_view key, double most) {
+    const double value = from.number(key, 0.0);
+    if (!(std::abs(value) <= most)) from.fail(key, fmt::format("it must be within {:g}", most));
+    return value;
+  }
+
+  void read_table(TomlFields& top) {
+    constexpr double kMost = 1e4;  // um, um/m, ppm
+    if (const toml::table* table = top.sub_table("table")) {
+      TomlFields from = fields(*table, "[table]");
+      scenario_.table.squareness_um_m = within(from, "squareness_um_m", kMost);
+      for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
+        const std::string axis(kAxisNames[i]);
+        sim::GuidewayErrors& errors = scenario_.table.axis[i];
+        scenario_.table.centre_mm[i] = within(from, "centre_" + axis + "_mm", kFarthest_mm);
+        errors.scale_ppm = within(from, "scale_" + axis + "_ppm", kMost);
+        errors.bow_um = within(from, "bow_" + axis + "_um", kMost);
+        errors.play_um = within(from, "play_" + axis + "_um", kMost);
+        errors.coupling_um_s2_m = within(from, "coupling_" + axis + "_um_s2_m", kMost);
+      }
+      from.refuse_rest();
+    }
+    if (const toml::table* table = top.sub_table("ballbar")) {
+      TomlFields from = fields(*table, "[ballbar]");
+      sim::BallbarSetting setting;
+      for (std::size_t i = 0; i < hal::kAxisCount; ++i)
+        setting.off_centre_um[i] = within(from, fmt::format("off_centre_{}_um", kAxisNames[i]), kMost);
+      setting.length_um = within(from, "length_um", kMost);
+      setting.noise_um = std::abs(within(from, "noise_um", kMost));
+      from.refuse_rest();
+      scenario_.ballbar = setting;
+    }
+  }
+
   static LoopTuning read_tuning(TomlFields& from) {
     LoopTuning tuning;
     tuning.bandwidth_Hz = from.positive("bandwidth_Hz", tuning.bandwidth_Hz);
@@ -178,9 +213,9 @@ class ScenarioReader {
   static void read_path(TomlFields& from, ScenarioMove& move) {
     if (move.kind == MoveKind::circle) {
       const double radius = length_mm(from, "radius_mm", 35.0);
-      const double turns = from.positive("turns", 1.0);
-      if (turns > 100.0 || turns != static_cast<int>(turns))
-        from.fail("turns", "expected a whole number from 1 to 100");
+      const double turns = from.number("turns", 1.0);
+      if (turns == 0.0 || std::abs(turns) > 100.0 || turns != static_cast<int>(turns))
+        from.fail("turns", "expected a whole number from 1 to 100, or from -1 to -100 for clockwise");
       move.path = Path::circle(radius, static_cast<int>(turns));
     } else {
       const double side = length_mm(from, "side_mm", 40.0), corner = from.positive("corner_mm", 8.0);

@@ -61,7 +61,12 @@ void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxis
 class ScenarioDriver {
  public:
   ScenarioDriver(const Scenario& scenario, const std::array<MachineAxis, hal::kAxisCount>& axes)
-      : scenario_(scenario), machine_(axes, scenario.seed), recorder_(machine_), period_s_(machine_.sample_period_s()) {
+      : scenario_(scenario),
+        machine_(axes, scenario.seed),
+        recorder_(machine_),
+        period_s_(machine_.sample_period_s()),
+        table_(scenario.table) {
+    if (scenario.ballbar) ballbar_.emplace(*scenario.ballbar, scenario.table.centre_mm, scenario.seed);
     machine_.enable();
   }
 
@@ -80,6 +85,7 @@ class ScenarioDriver {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       run.records[i] = recorder_.record(i);
       run.tracking_um[i] = recorder_.tracking_error_um(i);
+      if (i == 0 && ballbar_) run.records[i].extra.push_back({"radius_mm", radius_mm_, {}});
       run.high_water_um[i] = 1e3 * static_cast<double>(machine_.axes()[i].monitors().high_water());
     }
     run.table_um = table_um_;
@@ -174,6 +180,7 @@ class ScenarioDriver {
 
   void observe(std::uint64_t k) {
     recorder_.take();
+    if (ballbar_) radius_mm_.push_back(ballbar_->read(table_.moved_to(table_mm_, period_s_)));
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const auto& axis = machine_.axes()[i];
       const double wanted_mm =
@@ -225,6 +232,9 @@ class ScenarioDriver {
   Machine machine_;
   Recorder recorder_;
   double period_s_;
+  sim::CrossedTable table_;
+  std::optional<sim::Ballbar> ballbar_;
+  std::vector<double> radius_mm_;  ///< by the ballbar
   const Path* path_ = nullptr;
   std::vector<std::array<firmware::Increment, hal::kAxisCount>> path_increments_;
   std::size_t path_place_ = 0;

@@ -47,6 +47,7 @@ bool keeps(const LoopTask& drive, const LoopAim& aim, const ControlFilterChoice&
 HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
                               const ControlFilterChoice& filters) {
   HighestLoop found;
+  std::size_t widest = 0, width = 0;  // of ranges of bandwidths that meet the requirements, in steps
   const double period_s = drives.front().model.data.sample_period_s;
   for (double f = kLowest_Hz; f < kHighestShare / period_s; f *= kBandwidthStep) {
     double modulus = HUGE_VAL;
@@ -54,12 +55,15 @@ HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim
     for (std::size_t i = 0; i < drives.size(); ++i)
       if (!keeps(drives[i], aim, filters, f, modulus)) stopped_by.push_back(i);
     found.best_modulus = std::max(found.best_modulus, modulus);
-    if (stopped_by.empty()) {
+    if (!stopped_by.empty()) {
+      const bool is_end_of_widest = width > 0 && width == widest && found.stopped_by.empty();
+      if (is_end_of_widest || (widest == 0 && found.stopped_by.empty())) found.stopped_by = stopped_by;
+      width = 0;
+    } else if (++width > widest) {
+      widest = width;
       found.bandwidth_Hz = f;
-      continue;
+      found.stopped_by.clear();
     }
-    if (found.bandwidth_Hz > 0.0 || found.stopped_by.empty()) found.stopped_by = stopped_by;
-    if (found.bandwidth_Hz > 0.0) break;
   }
   return found;
 }

@@ -41,8 +41,9 @@ struct HighestLoop {
 /// Ratio of neighbouring bandwidths that highest_bandwidth() tries.
 inline constexpr double kBandwidthStep = 1.04;
 
-/// The highest bandwidth up to which all drives meet the requirements with these filters, from the lowest at which they
-/// do: beyond a gap a small change of the drive would fall into it.
+/// The upper end of the widest range of bandwidths, in ratio, in which all drives meet the requirements with these
+/// filters. In a narrow range beyond a gap, a small change of the drive would fall into the gap. A narrow range below a
+/// gap comes from the lowest measured frequencies, at which friction and cogging disturb the response.
 HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
                               const ControlFilterChoice& filters);
 

@@ -48,18 +48,16 @@ inline PathInProcess follow_on(host::BoardClient& board, std::size_t axes, const
 }
 
 /// Axes that are these drives, with the parameters of the files.
-inline PathInProcess follow_in_process(const std::vector<sim::DriveDescription>& drives,
+inline PathInProcess follow_in_process(const std::vector<host::SimulatedDrive>& drives,
                                        const std::vector<std::string>& parameters, const std::string& program) {
-  std::vector<host::SimulatedDrive> simulated;
-  for (const sim::DriveDescription& drive : drives) simulated.push_back({drive});
-  host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{simulated, "", 1}));
+  host::BoardClient board(std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", 1}));
   return follow_on(board, drives.size(), parameters, program);
 }
 
 /// Contour error, um rms, of two axes with this drive. NaN if the path does not end.
 inline double contour_rms_in_process(const sim::DriveDescription& drive, const std::vector<std::string>& parameters,
                                      const std::string& program) {
-  const PathInProcess done = follow_in_process({drive, drive}, parameters, program);
+  const PathInProcess done = follow_in_process({{drive}, {drive}}, parameters, program);
   if (static_cast<firmware::PathEnd>(done.outcome.state.end) != firmware::PathEnd::completed) return std::nan("");
   double squares = 0.0;
   const std::vector<double> errors = host::contour_error_um(done.capture, done.path, done.machine.scale);

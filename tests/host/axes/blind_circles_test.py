@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """axistool circle on machines of an independent simulation: two axes with loops, friction, play and geometry, one to
-three causes each, with and without a ballbar. Prints the seeds. The argument is the number of machines (60 for the
-figures in MEASURED)."""
+three causes each, with and without a ballbar. Prints the seeds. Arguments: number of machines (60 for the figures in
+MEASURED), first seed (default 1)."""
 
 import json
 import math
@@ -17,9 +17,10 @@ RADIUS, PERIOD, SUBSTEPS = 40.0, 1e-3, 2
 STEP = PERIOD / SUBSTEPS
 ENCODER = 0.5e-3  # mm
 FEEDS = (40.0, 120.0)
+TOP_ACCELERATION = FEEDS[1] ** 2 / RADIUS
 MOTOR = ("servo_mismatch", "reversal_spike x", "reversal_spike y", "torque_ripple x", "torque_ripple y", "vibration x",
          "vibration y")
-TABLE = ("squareness", "scale_mismatch", "backlash x", "backlash y", "lateral_play x", "lateral_play y",
+TABLE = ("squareness", "scale_mismatch", "coupling", "backlash x", "backlash y", "lateral_play x", "lateral_play y",
          "straightness x", "straightness y", "cyclic_error x", "cyclic_error y")
 
 
@@ -90,8 +91,11 @@ def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict
     side = {"x": 0.0, "y": 0.0}
     xs, ys = [], []
     last = dict(seat)
+    speed = 0.0  # of x
     for k in range(len(PATH)):
         at = {"x": motor["x"][k], "y": motor["y"][k]}
+        pull = (at["x"] - last["x"]) / STEP - speed
+        speed += pull
         moved = {}
         for axis in "xy":
             gap = causes.get(f"backlash {axis}", 0.0) / 2.0
@@ -111,6 +115,7 @@ def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict
             else:
                 y += wave
                 x += bow + play
+        y += causes.get("coupling", 0.0) * pull / STEP / TOP_ACCELERATION
         x += causes.get("squareness", 0.0) * at["y"] / RADIUS
         x += causes.get("scale_mismatch", 0.0) * at["x"] / RADIUS
         xs.append(x)
@@ -139,6 +144,7 @@ def draw_machine(seed: int) -> tuple[dict[str, float], dict[str, float], bool]:
                         "vibration": lambda: dice.uniform(60.0, 200.0),
                         "straightness": lambda: sign * dice.uniform(4e-3, 15e-3),
                         "backlash": lambda: dice.uniform(2e-3, 12e-3),
+                        "coupling": lambda: sign * dice.uniform(3e-3, 8e-3),
                         "lateral_play": lambda: dice.uniform(3e-3, 10e-3),
                         "cyclic_error": lambda: dice.uniform(1e-3, 4e-3)}.get(
                             kind, lambda: sign * dice.uniform(3e-3, 15e-3))()
@@ -169,7 +175,7 @@ def turning_rows() -> list[int]:
     steady = 0
     for k in range(1, len(PATH)):
         feed = abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS
-        steady = steady + 1 if any(abs(feed / one - 1.0) < 0.01 for one in FEEDS) else 0
+        steady = steady + 1 if any(abs(feed / one - 1.0) < 1e-5 for one in FEEDS) else 0
         if steady > 0.15 / STEP:
             rows.append(k)
     return rows
@@ -225,9 +231,9 @@ def trial(seed: int, folder: Path) -> dict[str, object]:
 
 
 def main() -> int:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    count, first = (int(given or default) for given, default in zip((sys.argv[1:] + [""] * 2)[:2], (10, 1)))
     with tempfile.TemporaryDirectory() as folder:
-        all_of = [trial(seed, Path(folder)) for seed in range(1, count + 1)]
+        all_of = [trial(seed, Path(folder)) for seed in range(first, first + count)]
     right = sum(one["right"] for one in all_of)
     sized, sizes = sum(one["sized"] for one in all_of), sum(one["sizes"] for one in all_of)
     said = [pair for one in all_of for pair in one["said"]]

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -81,8 +82,45 @@ TEST_F(Circle, ABallbarShowsThatAxesAreNotSquare) {
 TEST_F(Circle, EncodersAloneNameNoGeometry) {
   const json found = circle(made("ccw.csv", 1.0, 9.0, false) + " " + made("cw.csv", -1.0, 9.0, false));
   EXPECT_TRUE(found["causes"].empty()) << found.dump(2);
-  for (const char* kind : {"squareness", "scale_mismatch", "backlash", "lateral_play", "straightness"})
+  for (const char* kind : {"squareness", "scale_mismatch", "coupling", "backlash", "lateral_play", "straightness"})
     EXPECT_THAT(found["cannot_see"], Contains(kind));
+}
+
+/// The shipped ballbar scenario with other errors of the table, or its own.
+class CircleOnATable : public Circle {
+ protected:
+  json of_table(const std::string& errors) const {
+    const std::string scenarios = AXIS_TEST_DATA "/../../host/hil/scenarios/";
+    std::string text = host::read_file(scenarios + "ballbar.toml");
+    const std::size_t begin = text.find("squareness_um_m"), end = text.find("[ballbar]");
+    if (!errors.empty()) text.replace(begin, end - begin, errors + "\n");
+    const ProgramRun run = run_axistool("hil " + folder_.write("bar.toml", text) + " -o " + file("bar"));
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return circle(file("bar/bar-x.csv") + " " + file("bar/bar-y.csv"));
+  }
+
+  /// Exactly these causes, with sizes within 5 % in their own units.
+  static void expect_causes(const json& found, std::map<std::string, double> amounts) {
+    for (const json& cause : found["causes"]) {
+      const std::string name = cause["kind"].get<std::string>() + " " + cause["axis"].get<std::string>();
+      ASSERT_TRUE(amounts.contains(name)) << found.dump(2);
+      EXPECT_NEAR(cause["amount"]["value"], amounts[name], 0.05 * std::abs(amounts[name])) << name;
+      amounts.erase(name);
+    }
+    EXPECT_TRUE(amounts.empty()) << amounts.begin()->first << " is missing";
+  }
+};
+
+TEST_F(CircleOnATable, NamesWhatTheShippedScenarioHas) {
+  // The bow of 60 um at 100 mm is 60 um * 0.35^2 at the radius.
+  expect_causes(of_table(""), {{"squareness xy", 200.0}, {"straightness x", 7.35}, {"lateral_play y", 5.0}});
+}
+
+TEST_F(CircleOnATable, TellsCouplingFromSquareness) {
+  expect_causes(of_table("coupling_x_um_s2_m = 20.0\nscale_x_ppm = 150.0\nscale_y_ppm = -50.0\n"),
+                {{"coupling xy", 20.0}, {"scale_mismatch xy", 200.0}});
+  expect_causes(of_table("coupling_y_um_s2_m = 8.0\nsquareness_um_m = -200.0\n"),
+                {{"coupling xy", 8.0}, {"squareness xy", -200.0}});
 }
 
 TEST_F(Circle, SaysWhatARecordLacks) {

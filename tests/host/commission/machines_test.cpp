@@ -99,6 +99,7 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_TRUE(found.state["raised"].is_object());
   EXPECT_GT(found.state["raised"]["margins"]["measured"]["modulus"]["value"].get<double>(), 0.45);
   EXPECT_LT(found.state["motion_s"].get<double>(), 360.0);
+  EXPECT_THAT(found.page, testing::HasSubstr("used as Rw"));
   // Each quantity has one figure on the page, and no sentence occurs twice.
   std::vector<std::string> sentences = sentences_of(found.page);
   for (const double error : found.prediction_errors)

@@ -18,6 +18,8 @@
 /// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm; optionally with cogging or a weight.
 class OwnMachine : public sim::ForeignMotion {
  public:
+  double inertia = 0.008, friction_Nm = 2.0;
+  bool is_late = false;  ///< its amplifier acts one control period later
   bool counts_backward = false;
   double cogging_Nm = 0.0;  ///< amplitude, with a period of 4 mm
   double weight_Nm = 0.0;
@@ -25,9 +27,10 @@ class OwnMachine : public sim::ForeignMotion {
   /// self-locking.
   std::function<double(double t_s)> process_N;
   double tachometer_deviation = 0.1;  ///< deviation of the speed's noise in motion, rad/s
+  double resting_deviation = 0.0;     ///< the same of the axis at rest
   double seizes_at_s = HUGE_VAL;      ///< machine time at which its bearing seizes
 
-  void command(std::optional<double> u_V) override { u_V_ = u_V; }
+  void command(std::optional<double> u_V) override { u_V_ = is_late ? std::exchange(next_V_, u_V) : u_V; }
   void advance(double duration_s) override {
     constexpr int kSteps = 20;
     for (int step = 0; step < kSteps; ++step) {
@@ -44,21 +47,24 @@ class OwnMachine : public sim::ForeignMotion {
 
  private:
   void move(double dt) {
-    constexpr double kEffort = 3.0, kInertia = 0.008, kFriction = 2.0, kLead = 1.6;
+    constexpr double kEffort = 3.0, kLead = 1.6;
     const double magnets = cogging_Nm * std::sin(2.0 * std::numbers::pi * x_ / 4.0);
     const double process_Nm = process_N && w_ != 0.0 ? 1e-3 * kLead * process_N(lived_s_) : 0.0;
     const double drive = kEffort * u_V_.value_or(0.0) + magnets - weight_Nm - process_Nm;
     const bool is_seized = lived_s_ > seizes_at_s;
     if (is_seized) w_ = 0.0;
-    if (is_seized || (w_ == 0.0 && std::abs(drive) <= kFriction)) return;
+    if (is_seized || (w_ == 0.0 && std::abs(drive) <= friction_Nm)) {
+      if (resting_deviation > 0.0) noisy_ = resting_deviation * normal_(random_);
+      return;
+    }
     const double way = w_ != 0.0 ? std::copysign(1.0, w_) : std::copysign(1.0, drive);
-    const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
+    const double w = w_ + dt / inertia * (drive - 0.03 * w_ - friction_Nm * way);
     x_ += kLead * dt * (w_ + w) / 2.0;
     w_ = w_ * w < 0.0 ? 0.0 : w;
     noisy_ = tachometer_deviation * normal_(random_);
   }
 
-  std::optional<double> u_V_;
+  std::optional<double> u_V_, next_V_;
   double x_ = 0.0, w_ = 0.0, noisy_ = 0.0, lived_s_ = 0.0;
   std::mt19937 random_{7};
   std::normal_distribution<double> normal_;

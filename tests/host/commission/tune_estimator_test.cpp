@@ -1,4 +1,5 @@
 // Tracking tests of the estimator on a board whose machine shares no code with the simulator.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,11 @@ class TunedEstimator : public testing::Test {
     session_->give_scales();
     session_->plan_limits(model);
     session_->download(session_->design(model, session_->first_loop(model), "first-params.toml"));
-    session_->record({"ladder-fast.csv", "ladder", {{20.0, 40.0}, {{"hold", 0.5}}}, "", 5.0});
+    session_->record(fast_jogs());
+  }
+
+  static host::CommissionRun fast_jogs() {
+    return {"ladder-fast.csv", "ladder", {{20.0, 40.0}, {{"hold", 0.5}}}, "", 5.0};
   }
 
   /// By another formula than the tool's: from the first move of the reference to the last one.
@@ -95,6 +100,43 @@ TEST_F(TunedEstimator, IsTheCalmestThatIsNoSofter) {
   EXPECT_NEAR(found["tachometer_variance"]["moving"], true_variance, 0.15 * true_variance);
   EXPECT_EQ(session_->tuned_options().disturbance_variance, found["chosen_V2"]);
   EXPECT_EQ(*session_->tuned_options().tach_variance, found["tachometer_variance"]["used"]);
+}
+
+/// Catches a variance of another sensor, record or state of the axis, one that the text or the folder states otherwise,
+/// and a design with the smaller of both.
+TEST_F(TunedEstimator, UsesTheLargerNoiseOfRestAndMotion) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const double converter = std::pow(hal::pc::AxisWiring{}.tachometer_resolution, 2) / 12.0;
+  for (const auto& [moving, resting] : {std::pair{0.1, 0.05}, {0.06, 0.08}}) {
+    board_.machine->tachometer_deviation = moving;
+    board_.machine->resting_deviation = resting;
+    session_->record(fast_jogs());
+    session_->record({"dwell.csv", "dwell", {{0.4, 1.0}, {{"speed", 5.0}, {"hold", 0.25}}}, "", 4.0});
+    const host::CommissionStepResult result = host::tune_estimator(*session_);
+    const json found = folder_.read_json("estimator.json")["tachometer_variance"];
+    std::printf("%s\n%s\n", found.dump().c_str(), result.said.c_str());
+    for (const auto& [key, deviation] : {std::pair{"moving", moving}, {"at_rest", resting}}) {
+      const double true_variance = std::pow(deviation, 2) + converter;
+      EXPECT_NEAR(found[key], true_variance, 0.15 * true_variance) << key;
+    }
+    EXPECT_EQ(found["used"], found[resting > moving ? "at_rest" : "moving"]);
+    EXPECT_EQ(found["from"], json::parse(R"({"at_rest": ["dwell.csv"], "moving": ["ladder-fast.csv"]})"));
+    EXPECT_THAT(result.said, testing::HasSubstr("in motion (ladder-fast.csv)"));
+    EXPECT_THAT(result.said, testing::HasSubstr("at rest (dwell.csv)"));
+    EXPECT_EQ(*session_->tuned_options().tach_variance, found["used"]);
+  }
+}
+
+/// Catches an Rw without the noise at rest where no powered record shows a rest.
+TEST_F(TunedEstimator, TakesTheNoiseOfTheDisabledAxisIfThePoweredOneNeverRests) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  board_.machine->resting_deviation = 0.3;
+  host::look(*session_);
+  host::tune_estimator(*session_);
+  const json found = folder_.read_json("estimator.json")["tachometer_variance"];
+  EXPECT_EQ(found["from"]["at_rest"], json::array({"standstill.csv"}));
+  EXPECT_NEAR(found["at_rest"], 0.09, 0.15 * 0.09);
+  EXPECT_EQ(found["used"], found["at_rest"]);
 }
 
 /// The rows in which a reference moves forward at constant speed, without the first part, in which the loop settles.
