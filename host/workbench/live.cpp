@@ -80,6 +80,12 @@ std::string Live::command(const std::string& words) const {
   return fmt::format("axistool {} --device {}", words, shell_word(device_.device));
 }
 
+void Live::require_free(const std::string& owner) const {
+  require_command(owner);
+  if (is_commissioning_)
+    throw Failure(ExitCode::refused, "a commissioning uses the axes: wait for its end, or cancel it");
+}
+
 json Live::description() const {
   const BoardPicture picture = watch_.picture();
   json axes = json::array(), channels = json::array(), streamed = json::array();
@@ -173,7 +179,7 @@ void Live::stop() {
 }
 
 std::string Live::move(const MotionRequest& request) {
-  ownership_.require(request.owner, Clock::now());
+  require_free(request.owner);
   const BoardPicture picture = watch_.picture();
   const bool is_of_all = request.axis.empty();
   const std::uint8_t axis = is_of_all ? std::uint8_t{0} : axis_index(request.axis, picture.values.axes());
@@ -299,7 +305,7 @@ json Live::staged(const ParameterText& file) const {
 }
 
 std::string Live::set(const ParametersRequest& request) {
-  ownership_.require(request.owner, Clock::now());
+  require_free(request.owner);
   std::vector<std::pair<std::size_t, float>> before;
   command_.with([&](BoardClient& board) {
     const firmware::ParameterValues old = board.read_values();
@@ -322,7 +328,7 @@ std::string Live::set(const ParametersRequest& request) {
 }
 
 void Live::undo(const std::string& owner) {
-  ownership_.require(owner, Clock::now());
+  require_free(owner);
   const std::lock_guard lock(mutex_);
   if (before_.empty()) throw Failure(ExitCode::refused, "nothing was changed in this session");
   command_.with([&](BoardClient& board) {
@@ -336,7 +342,7 @@ void Live::undo(const std::string& owner) {
 }
 
 void Live::keep(const std::string& owner) {
-  ownership_.require(owner, Clock::now());
+  require_free(owner);
   command_.with([](BoardClient& board) { board.save(); });
 }
 

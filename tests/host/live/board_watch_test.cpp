@@ -58,6 +58,25 @@ TEST(BoardWatch, StreamsEveryRowOnceAndBeginsAnewWithOtherChannels) {
   EXPECT_THROW(watch.rows(second.epoch, 1, 10, 60, settings), host::Failure) << "no channel of this axis";
 }
 
+TEST(BoardWatch, ALentBoardCapturesForAnotherProgramAndStreamsAgainAfterwards) {
+  const BoardAtASocket board(firmware_test::paper_values());
+  BoardWatch watch(opener(board));
+  ASSERT_TRUE(wait_until([&] { return watch.picture().end > 10; }));
+  const std::uint64_t first = watch.picture().epoch;
+  host::BoardClient other = board.client();
+  firmware::CaptureRequest request;
+  request.channels[0] = 1;
+  EXPECT_THROW(other.start_capture(request), host::Failure) << "a board runs one capture at a time";
+  watch.lend("lent");
+  other.start_capture(request);
+  EXPECT_EQ(watch.picture().message, "lent");
+  EXPECT_THROW(watch.arm({}, {}), host::Failure);
+  other.stop_capture();
+  EXPECT_EQ(watch.picture().epoch, first);
+  watch.give_back();
+  EXPECT_TRUE(wait_until([&] { return watch.picture().epoch > first && watch.picture().end > 10; }));
+}
+
 TEST(BoardWatch, NamesUnitsAndRefusesWhatIsNoSetOfChannels) {
   const std::vector<sim::DriveKind> kinds{sim::DriveKind::rotary, sim::DriveKind::linear};
   const auto names = [&](const std::vector<std::string>& wanted) {
