@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/device/capture_wish.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -187,14 +188,15 @@ void BoardWatch::step(const std::stop_token& stop) {
   std::optional<Armed> armed;
   bool reads = false, starts = false, ends = false;
   const auto now = steady_clock::now();
+  const bool is_wished = now >= next_status_ && is_capture_wished(board_->name());
   {
     const std::lock_guard lock(mutex_);
     armed.swap(armed_);
     reads = now >= next_values_;
-    ends = is_lent_ && is_streaming_;
-    starts = wanted_.has_value() || (!is_streaming_ && now >= next_stream_);
+    ends = (is_lent_ || is_wished) && is_streaming_;
+    starts = !ends && (wanted_.has_value() || (!is_streaming_ && now >= next_stream_));
   }
-  if (ends) end_stream();
+  if (ends) end_stream();  // the next one begins after kRetry, if no other program captures
   if (reads) read_values();
   if (starts) start_stream();
   if (armed) run_armed(stop, std::move(*armed));
@@ -255,6 +257,7 @@ void BoardWatch::end_stream() {
   board_->stop_capture();
   const std::lock_guard lock(mutex_);
   is_streaming_ = false;
+  next_stream_ = steady_clock::now() + kRetry;
 }
 
 void BoardWatch::fetch() {
