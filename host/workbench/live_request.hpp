@@ -13,7 +13,8 @@ namespace host::workbench {
 /// { "owner": KEY }.
 std::string parse_owner(std::string_view text);
 
-/// { "owner": KEY, "do": "jog", "axis": "x", "velocity": 20 }; mm/s (m/s). move has "position" instead, mm (m). halt and clear_faults concern all axes.
+/// { "owner": KEY, "do": "jog", "axis": "x", "velocity": 20 }; mm/s (m/s). move has "position" instead, mm (m). halt
+/// and clear_faults concern all axes.
 struct MotionRequest {
   enum class Action { enable, disable, jog, move, halt, home, home_here, clear_faults };
   std::string owner, axis;
