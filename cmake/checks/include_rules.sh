@@ -35,7 +35,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/simulated_board/"] = "host/simulated_board/ host/link/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/device/"] = "host/device/ host/path/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/live/"] = "host/live/ " may["host/device/"]
-    may["host/workbench/"] = "host/workbench/ host/model/ host/opening/ host/response/ host/hil/ " may["host/live/"] " " may["host/diagnose/"]
+    may["host/workbench/"] = "host/workbench/ host/commission/ host/model/ host/opening/ host/response/ host/hil/ " may["host/live/"] " " may["host/diagnose/"]
     may["host/external_plant/"] = "host/external_plant/ host/record/ sim/"
     may["host/response/"] = "host/response/ host/model/ host/report/ " may["host/device/"] " " may["host/identify/"]
     may["host/axes/"] = "host/axes/ host/infer/ " may["host/response/"]

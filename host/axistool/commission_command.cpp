@@ -13,8 +13,8 @@
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/commission/commission.hpp"
-#include "host/commission/folder_lock.hpp"
 #include "host/commission/matched_loops.hpp"
+#include "host/commission/start.hpp"
 #include "host/external_plant/external_plant.hpp"
 #include "host/model/model_file.hpp"
 #include "host/shipped_files.hpp"
@@ -49,11 +49,8 @@ hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
   return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
 }
 
-/// An axis and the folder of its results.
-struct Axis {
-  std::unique_ptr<host::FolderLock> lock;
-  std::unique_ptr<host::CommissionFolder> folder;
-  host::CommissionOptions options;
+/// An axis with the folder of its results.
+struct Axis : host::CommissionStart {
   sim::DriveDescription machine;  ///< to simulate
 };
 
@@ -98,69 +95,33 @@ std::optional<host::CommissionHoming> homing_of(const CommissionArguments& argum
   return host::CommissionHoming{kModes.at(arguments.home.substr(is_backward ? 1 : 0)), 0.0, is_backward};
 }
 
-/// The data sheet: from the command line, else of the simulated machine, else from the folder.
-sim::DriveDescription sheet_of(const std::string& drive, const std::string& model, const std::string& kept) {
-  std::error_code fault;
+/// The data sheet: from the command line, else of the simulated machine; empty: that of the folder.
+std::optional<sim::DriveDescription> sheet_of(const std::string& drive, const std::string& model) {
   if (!drive.empty()) return host::read_drive(drive);
-  if (!model.empty()) {
-    sim::DriveDescription sheet = host::read_drive(host::machine_file(model));
-    sheet.effects.clear();  // the effects are to be found
-    return sheet;
-  }
-  if (std::filesystem::exists(kept, fault)) return host::read_drive(kept);
-  throw host::Failure(
-      host::ExitCode::usage,
-      "the scales of count, volt and turn are unknown: give this drive's data sheet with --drive DRIVE.toml");
-}
-
-/// Default box of a simulated machine.
-std::string usual_box(sim::DriveKind kind) {
-  return kind == sim::DriveKind::rotary ? "travel=100,speed=200,volts=4,time=360"
-                                        : "travel=0.2,speed=0.4,volts=4,time=360";
-}
-
-void begin_or_go_on(const CommissionArguments& arguments, const host::CommissionFolder& folder) {
-  if (!arguments.from.empty() || folder.first_undone() == std::size_t{0}) return;
-  const auto next = folder.first_undone();
-  throw host::Failure(
-      host::ExitCode::usage,
-      fmt::format("{} holds a commissioning{}: --from {} continues it, --from look starts over, another -o keeps both",
-                  arguments.folder, next ? "" : " that is complete",
-                  next ? host::kCommissionSteps[*next].name : "compensate"));
+  if (model.empty()) return std::nullopt;
+  sim::DriveDescription sheet = host::read_drive(host::machine_file(model));
+  sheet.effects.clear();  // the effects are to be found
+  return sheet;
 }
 
 Axis axis_of(const CommissionArguments& arguments, std::size_t i, const std::string& path) {
-  Axis axis{std::make_unique<host::FolderLock>(path), std::make_unique<host::CommissionFolder>(path), {}, {}};
-  host::CommissionFolder& folder = *axis.folder;
-  if (arguments.axes.size() == 1) begin_or_go_on(arguments, folder);
-  host::CommissionOptions& options = axis.options;
-  const std::string& name = arguments.axes[i];
-  const std::string kept = folder.path("drive.toml"), model = of_axis(arguments.models, i);
-  options.axis = axis_index(name, hal::kMostAxes);
-  options.axis_name = name;
-  options.sheet = sheet_of(of_axis(arguments.drives, i), model, kept);
-  options.bandwidth_Hz = arguments.bandwidth_Hz;
-  options.modulus = arguments.modulus;
-  options.save = arguments.save;
-  if (folder.document().contains("overtravel")) options.overtravel = folder.document()["overtravel"];
-  if (arguments.overtravel) options.overtravel = arguments.overtravel;
-  if (folder.document().contains("force_N")) options.force_N = folder.document()["force_N"];
-  if (arguments.force_N) options.force_N = arguments.force_N;
-  std::string box = of_axis(arguments.boxes, i);
-  if (box.empty()) box = folder.document().value("box", "");
-  if (box.empty() && is_simulated(arguments)) box = usual_box(options.sheet.data.kind);
-  if (box.empty())
-    throw host::Failure(host::ExitCode::refused,
-                        "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
-  options.box = host::parse_box(box, options.sheet.data.kind);
-  options.homing = homing_of(arguments, options);
-  folder.put("axis", name);
-  folder.put("box", box);
-  if (options.overtravel) folder.put("overtravel", *options.overtravel);
-  if (options.force_N) folder.put("force_N", *options.force_N);
-  host::write_model(options.sheet, kept);
-  axis.machine = model.empty() ? options.sheet : host::read_drive(host::machine_file(model));
-  return axis;
+  const std::string model = of_axis(arguments.models, i);
+  host::CommissionStart start =
+      host::start_commission({.axis = arguments.axes[i],
+                              .folder = path,
+                              .sheet = sheet_of(of_axis(arguments.drives, i), model),
+                              .box = of_axis(arguments.boxes, i),
+                              .overtravel = arguments.overtravel,
+                              .force_N = arguments.force_N,
+                              .is_simulated = is_simulated(arguments),
+                              .continues = arguments.axes.size() > 1 || !arguments.from.empty()});
+  start.options.bandwidth_Hz = arguments.bandwidth_Hz;
+  start.options.modulus = arguments.modulus;
+  start.options.save = arguments.save;
+  start.options.homing = homing_of(arguments, start.options);
+  const sim::DriveDescription machine =
+      model.empty() ? start.options.sheet : host::read_drive(host::machine_file(model));
+  return {std::move(start), machine};
 }
 
 void require_one_or_all(const CommissionArguments& arguments) {

@@ -86,15 +86,9 @@ void jog(const MotionArguments& arguments) {
                interrupted() ? " (interrupted)" : "");
 }
 
-/// Asks before a long move if the travel limits still have their initial values, because these are not the real limits.
+/// Asks before a long move without travel limits.
 void ask_without_travel(const MotionArguments& arguments, const firmware::AxisValues& values, double way) {
-  const auto is_initial = [&](std::string_view name, float value) {
-    return value == std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name)->initial;
-  };
-  if (!is_initial("monitor.travel_min", values.get<"monitor.travel_min">()) ||
-      !is_initial("monitor.travel_max", values.get<"monitor.travel_max">()) ||
-      std::abs(way) <= static_cast<double>(values.get<"homing.travel">()))
-    return;
+  if (!host::is_long_without_limits(values, way)) return;
   require_consent(arguments, fmt::format("Move {} by {:g}? That is more than homing.travel = {:g}, and "
                                          "monitor.travel_min and monitor.travel_max are not set.",
                                          arguments.axis, way, values.get<"homing.travel">()));
@@ -107,15 +101,13 @@ void move(const MotionArguments& arguments) {
   const firmware::ParameterValues values = board.read_values();
   const double before = position_of(board, axis, values);
   const double target = arguments.relative ? before + arguments.value : arguments.value;
-  const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
-  if (std::abs(target / resolution) > 9e15)
-    throw host::Failure(host::ExitCode::usage, fmt::format("{:g} is too far for the axis to count", target));
+  host::counts_of(target, values.axis(axis));
   if (!arguments.dry_run) ask_without_travel(arguments, values.axis(axis), target - before);
   catch_interrupts();
   if (!arguments.dry_run && arguments.take_over) board.take_over();
   const double way = arguments.relative ? arguments.value : target;
   if (!arguments.dry_run)
-    host::move_and_wait(board, axis, std::llround(way / resolution), arguments.relative, interrupted);
+    host::move_and_wait(board, axis, host::counts_of(way, values.axis(axis)), arguments.relative, interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
   if (!arguments.dry_run) host::require_no_contact(board, values);

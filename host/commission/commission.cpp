@@ -5,6 +5,7 @@
 #include <array>
 
 #include "firmware/core/axis_fault.hpp"
+#include "host/cancellation.hpp"
 #include "host/commission/steps.hpp"
 #include "host/exit_codes.hpp"
 
@@ -56,6 +57,9 @@ void commission_axis(BoardClient& board, const CommissionOptions& options, const
       const CommissionStepResult result = kWork[step](session);
       folder.finish(step, result.files, result.said);
       talk.tell("  " + result.said);
+    } catch (const Cancelled&) {
+      give_back(session);
+      throw;
     } catch (const Failure& failure) {
       if (failure.code == ExitCode::device_fault && is_swinging(session) && is_in_loop(step) && session.calm_down()) {
         talk.tell(fmt::format("  The loop oscillates: {}. Trying again with half the bandwidth.", failure.what()));

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "firmware/app/parameters/set_crc.hpp"
+#include "host/device/capture_wish.hpp"
 #include "host/device/reply_status.hpp"
 #include "host/exit_codes.hpp"
 #include "host/link/device_users.hpp"
@@ -336,6 +337,24 @@ firmware::TriggeredPayload BoardClient::read_triggered(std::uint32_t first) {
 void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
   samples_.clear();
   request(MessageType::start_capture, wanted);
+}
+
+void BoardClient::take_capture(const firmware::CaptureRequest& wanted) {
+  constexpr milliseconds kPatience{2000}, kPause{20};  // a workbench looks ten times a second
+  samples_.clear();
+  Message message;
+  message.type = MessageType::start_capture;
+  message.put(wanted);
+  Message reply = reply_to(message, patience_);
+  if (reply.status == Status::others_capture) {
+    const CaptureWish wish(name());
+    const auto until = now() + kPatience;
+    while (reply.status == Status::others_capture && now() < until) {
+      wait(kPause);
+      reply = reply_to(message, patience_);
+    }
+  }
+  require_accepted(reply);
 }
 
 firmware::CaptureReply BoardClient::stop_capture() {

@@ -95,6 +95,8 @@ class BoardClient {
   firmware::TriggeredPayload read_triggered(std::uint32_t first);
 
   void start_capture(const firmware::CaptureRequest& request);
+  /// The same; a workbench that streams this board's channels ends its stream for it (CaptureWish).
+  void take_capture(const firmware::CaptureRequest& request);
   firmware::CaptureReply stop_capture();
   /// Empty beyond the last row.
   std::optional<firmware::FaultRowPayload> fault_row(std::uint8_t axis, std::uint16_t row);

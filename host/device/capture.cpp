@@ -41,7 +41,7 @@ class CaptureRun {
     for (const firmware::Channel channel : settings_.channels)
       request.channels[settings_.axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
     request.every = settings_.every;
-    board_.start_capture(request);
+    board_.take_capture(request);
     try {
       fetch(watch);
     } catch (...) {

@@ -172,7 +172,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     for (const auto& part : entry_requests(excitation, axis)) board.load_excitation(part);
     firmware::ExcitationRequest request = excitation.request;
     request.axis = axis;
-    if (!is_capturing) board.start_capture(capture);
+    if (!is_capturing) board.take_capture(capture);
     is_capturing = true;  // from here on this program must stop the capture
     board.start_excitation(request);
     firmware::ExcitationStatePayload state;

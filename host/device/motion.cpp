@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
@@ -166,6 +168,22 @@ void home_and_wait(BoardClient& board, std::uint8_t axis, const std::function<bo
     if (board.status().axis.at(axis).fault == kNear) refuse_switch(board, axis);
     throw;
   }
+}
+
+std::int64_t counts_of(double length, const firmware::AxisValues& values) {
+  const double counts = length / static_cast<double>(values.get<"drive.encoder_resolution">());
+  if (!(std::abs(counts) <= 9e15))
+    throw Failure(ExitCode::usage, fmt::format("{:g} is too far for the axis to count", length));
+  return std::llround(counts);
+}
+
+bool is_long_without_limits(const firmware::AxisValues& values, double way) {
+  const auto is_initial = [&](std::string_view name, float value) {
+    return value == std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name)->initial;
+  };
+  return is_initial("monitor.travel_min", values.get<"monitor.travel_min">()) &&
+         is_initial("monitor.travel_max", values.get<"monitor.travel_max">()) &&
+         std::abs(way) > static_cast<double>(values.get<"homing.travel">());
 }
 
 void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t counts, bool relative,

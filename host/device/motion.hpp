@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "firmware/app/parameters/parameter_values.hpp"
 #include "host/device/board_client.hpp"
 
 namespace host {
@@ -25,6 +26,13 @@ void disable_and_wait(BoardClient& board, std::uint8_t mask);
 /// Throws Failure(refused) if `velocity` (mm/s or m/s) exceeds the axis's limits.velocity, because the board would move
 /// more slowly than commanded.
 void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity);
+
+/// Counts of a length, mm or m. Throws Failure(usage) if the axis cannot count as far.
+std::int64_t counts_of(double length, const firmware::AxisValues& values);
+
+/// Whether a move by `way`, mm or m, is longer than homing.travel although the travel limits have their initial values,
+/// because these are not the real limits.
+bool is_long_without_limits(const firmware::AxisValues& values, double way);
 
 /// Throws Failure(answer_is_no) if the last jog, move or homing ended because the touch probe made contact.
 void require_no_contact(BoardClient& board, const firmware::ParameterValues& values);

@@ -205,7 +205,7 @@ PathRecorder::~PathRecorder() {
 
 void PathRecorder::start() {
   if (runs_) return;
-  board_.start_capture(request_);
+  board_.take_capture(request_);
   runs_ = true;
 }
 

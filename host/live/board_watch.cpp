@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/device/capture_wish.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -17,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kPump{20}, kStatusInterval{100}, kRetry{1000}, kValuesInterval{2000};
+constexpr milliseconds kPump{20}, kStatusInterval{100}, kRetry{1000}, kValuesInterval{2000}, kLongestEnd{3000};
 constexpr double kMostRows_Hz = 1000.0;
 
 /// Whether rows before and after a change have the same units and spacing.
@@ -56,6 +57,30 @@ BoardPicture BoardWatch::picture() const {
 void BoardWatch::choose(std::vector<WatchedChannel> channels) {
   const std::lock_guard lock(mutex_);
   wanted_ = std::move(channels);
+}
+
+void BoardWatch::lend(const std::string& to) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (picture_.trigger.phase == WatchedTrigger::Phase::waiting)
+      throw Failure(ExitCode::refused, "a trigger waits: disarm it first");
+    is_lent_ = true;
+    picture_.message = to;
+  }
+  for (const auto until = steady_clock::now() + kLongestEnd; steady_clock::now() < until;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!is_streaming_) return;
+    }
+    std::this_thread::sleep_for(kPump);
+  }
+  give_back();
+  throw Failure(ExitCode::time_out, "the stream of the board's channels does not end");
+}
+
+void BoardWatch::give_back() {
+  const std::lock_guard lock(mutex_);
+  is_lent_ = false;
 }
 
 void BoardWatch::look_again() {
@@ -101,6 +126,7 @@ void BoardWatch::arm(TriggeredSettings settings, KeepCapture keep) {
   const std::lock_guard lock(mutex_);
   if (picture_.trigger.phase == WatchedTrigger::Phase::waiting)
     throw Failure(ExitCode::refused, "the trigger is armed already");
+  if (is_lent_) throw Failure(ExitCode::refused, picture_.message);
   if (!picture_.is_connected) throw Failure(ExitCode::no_such_device, picture_.message);
   picture_.trigger = {WatchedTrigger::Phase::waiting, ""};
   is_disarmed_ = false;
@@ -160,14 +186,17 @@ void BoardWatch::lose(const std::string& message) {
 
 void BoardWatch::step(const std::stop_token& stop) {
   std::optional<Armed> armed;
-  bool reads = false, starts = false;
+  bool reads = false, starts = false, ends = false;
   const auto now = steady_clock::now();
+  const bool is_wished = now >= next_status_ && is_capture_wished(board_->name());
   {
     const std::lock_guard lock(mutex_);
     armed.swap(armed_);
     reads = now >= next_values_;
-    starts = wanted_.has_value() || (!is_streaming_ && now >= next_stream_);
+    ends = (is_lent_ || is_wished) && is_streaming_;
+    starts = !ends && (wanted_.has_value() || (!is_streaming_ && now >= next_stream_));
   }
+  if (ends) end_stream();  // the next one begins after kRetry, if no other program captures
   if (reads) read_values();
   if (starts) start_stream();
   if (armed) run_armed(stop, std::move(*armed));
@@ -188,6 +217,7 @@ void BoardWatch::start_stream() {
   std::vector<WatchedChannel> channels;
   {
     const std::lock_guard lock(mutex_);
+    if (is_lent_) return;
     const bool had_axis = std::ranges::any_of(picture_.channels, [&](const WatchedChannel& one) {
       return picture_.values.axis(one.axis).get<"drive.fitted">();
     });
@@ -221,6 +251,13 @@ void BoardWatch::start_stream() {
   picture_.row_period_s = request.every / rate_Hz;
   ++picture_.epoch;
   ring_ = std::make_unique<SampleRing>(channels.size());
+}
+
+void BoardWatch::end_stream() {
+  board_->stop_capture();
+  const std::lock_guard lock(mutex_);
+  is_streaming_ = false;
+  next_stream_ = steady_clock::now() + kRetry;
 }
 
 void BoardWatch::fetch() {

@@ -57,6 +57,11 @@ class BoardWatch {
   /// Streams these channels from now on.
   void choose(std::vector<WatchedChannel> channels);
 
+  /// Ends the stream and starts no other until give_back(), because a board runs one capture at a time. Throws
+  /// Failure(refused) while a trigger waits, Failure(time_out) if the stream does not end.
+  void lend(const std::string& to);
+  void give_back();
+
   /// Reads the parameters anew, soon. Call it after a change.
   void look_again();
 
@@ -89,6 +94,7 @@ class BoardWatch {
   void fetch();
   void take(const BoardClient::Samples& samples);
   void poll_status();
+  void end_stream();
   void run_armed(const std::stop_token& stop, Armed armed);
 
   const OpenBoard open_;
@@ -103,7 +109,7 @@ class BoardWatch {
   std::unique_ptr<SampleRing> ring_;
   std::optional<std::vector<WatchedChannel>> wanted_;
   std::optional<Armed> armed_;
-  bool is_disarmed_ = false, is_streaming_ = false;
+  bool is_disarmed_ = false, is_streaming_ = false, is_lent_ = false;
 
   std::jthread thread_;  ///< last, because it uses the others
 };

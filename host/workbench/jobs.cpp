@@ -32,7 +32,7 @@ std::string model_stem(const Request& request) {
                                                 : "-improved");
 }
 
-bool is_search(const Request& request) { return request.task == Task::diagnose || request.task == Task::improve; }
+bool is_open(const nlohmann::json& state) { return state["state"] == "queued" || state["state"] == "running"; }
 
 std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -57,15 +57,22 @@ nlohmann::json read_state(const std::string& path) {
 
 }  // namespace
 
-Jobs::Jobs(const Folder& folder) : folder_(folder) {
+Jobs::Jobs(const Folder& folder, Commission commission) : folder_(folder), commission_(std::move(commission)) {
   load();
-  searcher_ = std::jthread([this](const std::stop_token& stop) { work(stop, true); });
-  fitter_ = std::jthread([this](const std::stop_token& stop) { work(stop, false); });
+  searcher_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::search); });
+  fitter_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::fit); });
+  if (commission_) commissioner_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::commission); });
+}
+
+Jobs::Lane Jobs::lane_of(Task task) {
+  if (task == Task::commission) return Lane::commission;
+  return task == Task::diagnose || task == Task::improve ? Lane::search : Lane::fit;
 }
 
 Jobs::~Jobs() {
   searcher_.request_stop();
   fitter_.request_stop();
+  commissioner_.request_stop();
   const std::lock_guard lock(mutex_);
   for (const auto& item : jobs_) item.second->is_cancelled = true;
 }
@@ -84,14 +91,29 @@ void Jobs::load() {
       continue;
     }
     const int id = state["id"];
-    if (state["state"] == "running" || state["state"] == "queued") state["state"] = "interrupted";
+    if (is_open(state)) state["state"] = "interrupted";
     job->state = std::move(state);
     jobs_[id] = std::move(job);
   }
 }
 
-int Jobs::submit(const Request& request) {
+/// A new folder for a commissioning that has none, and checks one that has.
+void Jobs::give_folder(Request& request) const {
+  if (!commission_) throw Failure(ExitCode::no_such_device, "axistool serve was started without --device");
+  if (std::ranges::any_of(
+          jobs_, [](const auto& item) { return item.second->request.commission && is_open(item.second->state); }))
+    throw Failure(ExitCode::refused, "another commissioning has not ended: cancel it first");
+  std::string& folder = request.commission->folder;
+  if (folder.empty())
+    folder = folder_.free_name(request.commission->axis, "");
+  else
+    folder_.existing(folder + "/commission.json");
+}
+
+int Jobs::submit(const Request& wanted) {
   const std::lock_guard lock(mutex_);
+  Request request = wanted;
+  if (request.commission) give_folder(request);
   const int id = jobs_.empty() ? 1 : jobs_.rbegin()->first + 1;
   if (queue_.size() >= kMostWaiting || id >= kMostJobs)
     throw Failure(ExitCode::refused, fmt::format("{} jobs are already waiting", queue_.size()));
@@ -99,8 +121,9 @@ int Jobs::submit(const Request& request) {
   job->request = request;
   const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));
   job->outputs.json = folder_.own_file(stem + ".json");
-  if (is_search(request)) job->outputs.report = folder_.own_file(stem + ".html");
-  if (request.task != Task::diagnose) job->outputs.model = folder_.free_name(model_stem(request), ".toml");
+  if (lane_of(request.task) == Lane::search) job->outputs.report = folder_.own_file(stem + ".html");
+  if (request.task != Task::diagnose && !request.commission)
+    job->outputs.model = folder_.free_name(model_stem(request), ".toml");
   for (const auto& item : jobs_)  // a waiting job has no file yet
     if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)
       job->outputs.model = folder_.free_name(fmt::format("{}-{}", model_stem(request), id), ".toml");
@@ -121,9 +144,9 @@ void Jobs::keep(Job& job, const std::string& state, const std::string& message) 
   write_file_atomically(folder_.own_file(state_name(job.state["id"])), job.state.dump(2) + "\n");
 }
 
-void Jobs::work(const std::stop_token& stop, bool searches) {
+void Jobs::work(const std::stop_token& stop, Lane lane) {
   const auto next = [&] {
-    return std::ranges::find_if(queue_, [&](int id) { return is_search(jobs_.at(id)->request) == searches; });
+    return std::ranges::find_if(queue_, [&](int id) { return lane_of(jobs_.at(id)->request.task) == lane; });
   };
   while (true) {
     Job* job = nullptr;
@@ -138,6 +161,16 @@ void Jobs::work(const std::stop_token& stop, bool searches) {
   }
 }
 
+nlohmann::json Jobs::done(Job& job) {
+  if (!job.request.commission)
+    return carry_out(folder_, job.request, job.outputs, [&job](double share) { job.share = share; });
+  return commission_(job.request, [this, &job](double share, const std::string& what) {
+    job.share = share;
+    const std::lock_guard lock(mutex_);
+    keep(job, "running", what);
+  });
+}
+
 void Jobs::run(Job& job, const std::stop_token& stop) {
   std::string state = "done", message;
   nlohmann::json log;
@@ -147,9 +180,10 @@ void Jobs::run(Job& job, const std::stop_token& stop) {
       keep(job, "running");
     }
     const CancelledBy scope(&job.is_cancelled);
-    const nlohmann::json document =
-        carry_out(folder_, job.request, job.outputs, [&job](double share) { job.share = share; });
+    const nlohmann::json document = done(job);
     write_file_atomically(job.outputs.json, document.dump(2) + "\n");
+    const std::lock_guard lock(mutex_);
+    if (job.request.commission && document["page"].is_string()) job.state["report"] = document["page"];
   } catch (const Cancelled&) {
     state = stop.stop_requested() ? "interrupted" : "cancelled";
   } catch (const FaultyLog& refused) {
@@ -157,10 +191,11 @@ void Jobs::run(Job& job, const std::stop_token& stop) {
     message = refused.what();
     log = log_faults_json(refused.faults);
   } catch (const std::exception& failure) {
-    state = "failed";
+    state = job.is_cancelled ? "cancelled" : "failed";
     message = failure.what();
   }
   const std::lock_guard lock(mutex_);
+  if (job.request.commission) job.state["next"] = next_step(job.request.commission->folder);
   if (!log.is_null()) job.state["log"] = log;
   try {
     keep(job, state, message);

@@ -1,10 +1,11 @@
-// Long tasks with progress and cancellation: one search at a time and, in parallel, one fit at a time. A job's state is
-// in workbench/0007.job.json and its results are beside that file, so that they survive a reload or a crash.
+// Long tasks with progress and cancellation: at a time one search, one fit and one commissioning. A job's state is in
+// workbench/0007.job.json and its results are beside that file, so that they survive a reload or a crash.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -21,21 +22,27 @@ namespace host::workbench {
 
 class Jobs {
  public:
-  /// Reads the jobs of earlier sessions. Unfinished ones are "interrupted".
-  explicit Jobs(const Folder& folder);
+  /// Share of the work that is done, and what is being done.
+  using Tell = std::function<void(double, const std::string&)>;
+  /// Commissions an axis and returns the command's document. Throws as the command does, and Cancelled.
+  using Commission = std::function<nlohmann::json(const Request&, const Tell&)>;
+
+  /// Reads the jobs of earlier sessions. Unfinished ones are "interrupted". `commission`: empty without a board.
+  explicit Jobs(const Folder& folder, Commission commission = {});
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
   /// Cancels the running job and waits for its end.
   ~Jobs();
 
-  /// Throws Failure(refused) if too many jobs wait.
+  /// Throws Failure(refused) if too many jobs wait, or if another commissioning has not ended.
   int submit(const Request& request);
 
   /// "axis-jobs/1": states without results, latest first.
   nlohmann::json list() const;
 
   /// "axis-job/1": { "id", "request", "command", "state": "queued"|"running"|"done"|"failed"|"cancelled"|"interrupted",
-  /// "share", "message", "model", "report", "document": the command's --json }; empty if there is no such job.
+  /// "share", "message", "model", "report", "next": step at
+  /// which a commissioning continues, "document": the command's --json }; empty if there is no such job.
   std::optional<nlohmann::json> state(int id) const;
 
   /// States, with documents, of the jobs that led to a model, in their order.
@@ -53,18 +60,25 @@ class Jobs {
     std::atomic<double> share = 0.0;
   };
 
+  /// What one thread does.
+  enum class Lane { search, fit, commission };
+
+  static Lane lane_of(Task task);
   void load();
-  void work(const std::stop_token& stop, bool searches);
+  void give_folder(Request& request) const;
+  void work(const std::stop_token& stop, Lane lane);
+  nlohmann::json done(Job& job);
   void run(Job& job, const std::stop_token& stop);
   void keep(Job& job, const std::string& state, const std::string& message = "");
   static nlohmann::json told(const Job& job);
 
   const Folder& folder_;
+  const Commission commission_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::map<int, std::unique_ptr<Job>> jobs_;
   std::deque<int> queue_;
-  std::jthread searcher_, fitter_;  ///< last members, because they use the others
+  std::jthread searcher_, fitter_, commissioner_;  ///< last members, because they use the others
 };
 
 }  // namespace host::workbench

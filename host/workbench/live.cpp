@@ -44,6 +44,15 @@ const char* phase_name(WatchedTrigger::Phase phase) {
   return kNames.at(static_cast<std::size_t>(phase));
 }
 
+/// Throws Failure(refused) for a move of which the command would ask whether it is meant.
+void require_known_way(const BoardPicture& picture, std::size_t axis, double position) {
+  const auto place = place_of_counts(picture.status.axis.at(axis).counts(), axis, &picture.values);
+  if (place && is_long_without_limits(picture.values.axis(axis), position - place->value))
+    throw Failure(ExitCode::refused,
+                  "this way is longer than homing.travel, and the axis has no travel limits: set "
+                  "monitor.travel_min and monitor.travel_max first");
+}
+
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 void append_numbers(std::string& text, const char* name, const std::vector<std::vector<double>>& channels) {
@@ -78,6 +87,12 @@ Live::Live(const Folder& folder, const LiveDevice& device)
 
 std::string Live::command(const std::string& words) const {
   return fmt::format("axistool {} --device {}", words, shell_word(device_.device));
+}
+
+void Live::require_free(const std::string& owner) const {
+  require_command(owner);
+  if (is_commissioning_)
+    throw Failure(ExitCode::refused, "a commissioning uses the axes: wait for its end, or cancel it");
 }
 
 json Live::description() const {
@@ -173,12 +188,13 @@ void Live::stop() {
 }
 
 std::string Live::move(const MotionRequest& request) {
-  ownership_.require(request.owner, Clock::now());
+  require_free(request.owner);
   const BoardPicture picture = watch_.picture();
   const bool is_of_all = request.axis.empty();
   const std::uint8_t axis = is_of_all ? std::uint8_t{0} : axis_index(request.axis, picture.values.axes());
   const auto mask = static_cast<std::uint8_t>(1u << axis);
   if (request.action == Action::jog) require_reachable(picture.values, axis, request.velocity);
+  if (request.action == Action::move) require_known_way(picture, axis, request.position);
   if (request.action == Action::home && picture.values.axis(axis).get<"homing.mode">() == 0)
     throw Failure(ExitCode::refused, fmt::format("axis {0} has no homing method: set {0}.homing.mode, or take the "
                                                  "present place as home",
@@ -198,6 +214,10 @@ std::string Live::move(const MotionRequest& request) {
       case Action::jog:
         board.jog(axis, request.velocity);
         words = fmt::format("jog {} {:g}", request.axis, request.velocity);
+        break;
+      case Action::move:
+        board.move(axis, counts_of(request.position, picture.values.axis(axis)));
+        words = fmt::format("move {} {:g}", request.axis, request.position);
         break;
       case Action::halt:
         board.stop();
@@ -299,7 +319,7 @@ json Live::staged(const ParameterText& file) const {
 }
 
 std::string Live::set(const ParametersRequest& request) {
-  ownership_.require(request.owner, Clock::now());
+  require_free(request.owner);
   std::vector<std::pair<std::size_t, float>> before;
   command_.with([&](BoardClient& board) {
     const firmware::ParameterValues old = board.read_values();
@@ -322,7 +342,7 @@ std::string Live::set(const ParametersRequest& request) {
 }
 
 void Live::undo(const std::string& owner) {
-  ownership_.require(owner, Clock::now());
+  require_free(owner);
   const std::lock_guard lock(mutex_);
   if (before_.empty()) throw Failure(ExitCode::refused, "nothing was changed in this session");
   command_.with([&](BoardClient& board) {
@@ -336,7 +356,7 @@ void Live::undo(const std::string& owner) {
 }
 
 void Live::keep(const std::string& owner) {
-  ownership_.require(owner, Clock::now());
+  require_free(owner);
   command_.with([](BoardClient& board) { board.save(); });
 }
 

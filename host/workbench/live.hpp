@@ -1,7 +1,9 @@
 // The board behind the page: its channels, its parameters and its motion, by the functions of the commands.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +16,7 @@
 #include "host/workbench/live_device.hpp"
 #include "host/workbench/live_request.hpp"
 #include "host/workbench/page_ownership.hpp"
+#include "host/workbench/request.hpp"
 
 namespace host::workbench {
 
@@ -48,6 +51,14 @@ class Live {
   /// Returns the equivalent command.
   std::string move(const MotionRequest& request);
 
+  /// Commissions an axis as the command does; the page's start is the consent to all motions within the box. Every
+  /// motion needs the page's command: without it, or with the thread's cancellation, the axis slows down, and the run
+  /// ends. Meanwhile other motions and changes of parameters are refused.
+  nlohmann::json commission(const Request& request, const std::function<void(double, const std::string&)>& tell);
+  /// Throws if this page does not command the axes.
+  void require_command(const std::string& owner) const { ownership_.require(owner, Clock::now()); }
+  const std::string& device() const { return device_.device; }
+
   void choose(const std::vector<std::string>& names);
   std::string arm(const TriggerWish& wish);
   void disarm() { watch_.disarm(); }
@@ -66,11 +77,14 @@ class Live {
   using Clock = std::chrono::steady_clock;
 
   std::string command(const std::string& words) const;
+  /// Throws if this page does not command the axes, or if a commissioning moves them.
+  void require_free(const std::string& owner) const;
 
   const Folder& folder_;
   const LiveDevice device_;
   PageOwnership ownership_;
   BoardWatch watch_;
+  std::atomic<bool> is_commissioning_ = false;
   mutable std::mutex mutex_;                                        ///< for `before_`
   std::vector<std::vector<std::pair<std::size_t, float>>> before_;  ///< values before each change, latest last
   BoardCommand command_;                                            ///< last: its thread asks for the owner

@@ -16,6 +16,7 @@ using Action = MotionRequest::Action;
 constexpr std::array kActions{std::pair{"enable", Action::enable},
                               std::pair{"disable", Action::disable},
                               std::pair{"jog", Action::jog},
+                              std::pair{"move", Action::move},
                               std::pair{"halt", Action::halt},
                               std::pair{"home", Action::home},
                               std::pair{"home_here", Action::home_here},
@@ -54,15 +55,19 @@ std::string parse_owner(std::string_view text) {
 
 MotionRequest parse_motion(std::string_view text) {
   const nlohmann::json document = object_of(text);
-  require_known(document, {"owner", "do", "axis", "velocity"});
+  require_known(document, {"owner", "do", "axis", "velocity", "position"});
   const std::string name = text_of(document, "do");
   const auto* const action = std::ranges::find(kActions, name, &std::pair<const char*, Action>::first);
-  if (action == kActions.end()) refuse("do", "expected enable, disable, jog, halt, home, home_here or clear_faults");
-  MotionRequest request{text_of(document, "owner"), text_of(document, "axis"), action->second, 0.0};
+  if (action == kActions.end())
+    refuse("do", "expected enable, disable, jog, move, halt, home, home_here or clear_faults");
+  MotionRequest request{text_of(document, "owner"), text_of(document, "axis"), action->second, 0.0, 0.0};
   const bool is_of_all = request.action == Action::halt || request.action == Action::clear_faults;
   if (is_of_all == !request.axis.empty()) refuse("axis", "expected an axis, except for halt and clear_faults");
   if ((request.action == Action::jog) != document.contains("velocity"))
     refuse("velocity", "jog needs it, and it alone");
+  if ((request.action == Action::move) != document.contains("position"))
+    refuse("position", "move needs it, and it alone");
+  if (request.action == Action::move) request.position = number_of(document["position"], "position");
   if (request.action == Action::jog) request.velocity = number_of(document["velocity"], "velocity");
   return request;
 }

@@ -13,12 +13,13 @@ namespace host::workbench {
 /// { "owner": KEY }.
 std::string parse_owner(std::string_view text);
 
-/// { "owner": KEY, "do": "jog", "axis": "x", "velocity": 20 }; mm/s (m/s). halt and clear_faults concern all axes.
+/// { "owner": KEY, "do": "jog", "axis": "x", "velocity": 20 }; mm/s (m/s). move has "position" instead, mm (m). halt
+/// and clear_faults concern all axes.
 struct MotionRequest {
-  enum class Action { enable, disable, jog, halt, home, home_here, clear_faults };
+  enum class Action { enable, disable, jog, move, halt, home, home_here, clear_faults };
   std::string owner, axis;
   Action action = Action::halt;
-  double velocity = 0.0;
+  double velocity = 0.0, position = 0.0;
 };
 MotionRequest parse_motion(std::string_view text);
 

@@ -12,6 +12,7 @@ AXIS_EMBED(axis_workbench_adjust, AXIS_PAGE_DIR "/adjust.js");
 AXIS_EMBED(axis_workbench_board, AXIS_PAGE_DIR "/board.js");
 AXIS_EMBED(axis_workbench_board_parameters, AXIS_PAGE_DIR "/board_parameters.js");
 AXIS_EMBED(axis_workbench_command, AXIS_PAGE_DIR "/command.js");
+AXIS_EMBED(axis_workbench_commission, AXIS_PAGE_DIR "/commission.js");
 AXIS_EMBED(axis_workbench_live, AXIS_PAGE_DIR "/live.js");
 AXIS_EMBED(axis_workbench_motion, AXIS_PAGE_DIR "/motion.js");
 AXIS_EMBED(axis_workbench_scope, AXIS_PAGE_DIR "/scope.js");
@@ -46,6 +47,7 @@ const std::vector<PageFile>& page_files() {
       {"board.js", kScript, AXIS_PAGE_FILE(board)},
       {"board_parameters.js", kScript, AXIS_PAGE_FILE(board_parameters)},
       {"command.js", kScript, AXIS_PAGE_FILE(command)},
+      {"commission.js", kScript, AXIS_PAGE_FILE(commission)},
       {"live.js", kScript, AXIS_PAGE_FILE(live)},
       {"motion.js", kScript, AXIS_PAGE_FILE(motion)},
       {"scope.js", kScript, AXIS_PAGE_FILE(scope)},

@@ -21,9 +21,12 @@ void PageOwnership::beat(const std::string& key, Time now) {
 }
 
 void PageOwnership::require(const std::string& key, Time now) const {
+  if (!holds(key, now)) throw Failure(ExitCode::refused, "this page does not command the axes: take the command first");
+}
+
+bool PageOwnership::holds(const std::string& key, Time now) const {
   const std::lock_guard lock(mutex_);
-  if (!is_there_locked(now) || key != key_)
-    throw Failure(ExitCode::refused, "this page does not command the axes: take the command first");
+  return is_there_locked(now) && key == key_;
 }
 
 void PageOwnership::drop() {

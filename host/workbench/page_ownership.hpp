@@ -25,6 +25,9 @@ class PageOwnership {
   /// has beaten again.
   void require(const std::string& key, Time now) const;
 
+  /// Whether require() would not throw.
+  bool holds(const std::string& key, Time now) const;
+
   void drop();  ///< nobody commands
   bool is_there(Time now) const;
 

@@ -15,9 +15,10 @@ namespace host::workbench {
 
 namespace {
 
-constexpr std::array kTasks{std::pair{"compare", Task::compare},   std::pair{"identify", Task::identify},
-                            std::pair{"diagnose", Task::diagnose}, std::pair{"add", Task::add},
-                            std::pair{"adjust", Task::adjust},     std::pair{"improve", Task::improve}};
+constexpr std::array kTasks{std::pair{"compare", Task::compare},      std::pair{"identify", Task::identify},
+                            std::pair{"diagnose", Task::diagnose},    std::pair{"add", Task::add},
+                            std::pair{"adjust", Task::adjust},        std::pair{"improve", Task::improve},
+                            std::pair{"commission", Task::commission}};
 
 /// Accepts a lower-case word, such as the name of an effect or of a fault of the log.
 std::string word_of(const std::string& text, const std::string& field) {
@@ -95,9 +96,14 @@ Request parse_request(std::string_view text) {
   const nlohmann::json document = object_of(text);
   const std::string name = text_of(document, "do");
   const auto* const task = std::ranges::find(kTasks, name, &std::pair<const char*, Task>::first);
-  if (task == kTasks.end()) refuse("do", "expected compare, identify, diagnose, add, adjust or improve");
+  if (task == kTasks.end()) refuse("do", "expected compare, identify, diagnose, add, adjust, improve or commission");
   Request request;
   request.task = task->second;
+  if (request.task == Task::commission) {
+    request.commission = parse_commission(document);
+    request.models = {file_of(text_of(document, "model"), "model")};
+    return request;
+  }
   if (request.task == Task::compare) {
     require_known(document,
                   {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map", "plot", "like"});
@@ -180,6 +186,10 @@ nlohmann::json to_json(const Request& request) {
     return document;
   }
   document["model"] = request.models.front();
+  if (request.commission) {
+    put(*request.commission, document);
+    return document;
+  }
   document["train"] = request.train;
   document["validate"] = request.validate;
   if (!request.absent.empty()) document["absent"] = request.absent;
@@ -191,6 +201,8 @@ nlohmann::json to_json(const Request& request) {
 }
 
 std::string command_line(const Request& request, const Outputs& outputs) {
+  if (request.commission)
+    return command_line(*request.commission, request.models.front()) + output_option("--json", outputs.json);
   std::string line = fmt::format("axistool {}", task_name(request.task));
   if (request.task != Task::identify)
     for (const std::string& model : request.models) line += fmt::format(" {}", shell_word(model));

@@ -2,21 +2,24 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/compare/focus.hpp"
+#include "host/workbench/commission_request.hpp"
 #include "host/workbench/request_fields.hpp"
 
 namespace host::workbench {
 
-enum class Task { compare, identify, diagnose, add, adjust, improve };
+enum class Task { compare, identify, diagnose, add, adjust, improve, commission };
 
 std::string_view task_name(Task task);
 
 /// A task on files of the folder: { "do": "add", "model": "x.toml", "kind": "cogging", "train": [...], "validate":
 /// [...], "accept": [...] }. compare has "models" and "records" instead; the model of identify is a data sheet.
+/// commission: CommissionRequest.
 struct Request {
   Task task = Task::compare;
   std::vector<std::string> models;  ///< one; for compare, one or more
@@ -28,6 +31,7 @@ struct Request {
   std::string like;                 ///< for compare: coordinate over which to look for effects of that shape
   Focus focus;                      ///< for compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP],
                                     ///< "plot": [X, Y]
+  std::optional<CommissionRequest> commission;  ///< for commission, whose only other fields are the task and one model
 };
 
 /// Throws Failure(usage) naming the field and its expected value. Names are plain (is_plain_name); the files may be

@@ -16,6 +16,7 @@
 #include "host/evidence/log_faults.hpp"
 #include "host/exit_codes.hpp"
 #include "host/input_limits.hpp"
+#include "host/model/model_file.hpp"
 #include "host/read_file.hpp"
 #include "host/report/effect_pages.hpp"
 #include "host/stop_notice.hpp"
@@ -113,8 +114,8 @@ nlohmann::json document_or_null(const Folder& folder, const std::string& name) {
 
 struct Server::Parts {
   Folder folder;
-  Jobs jobs{folder};
-  std::optional<Live> live;
+  const std::unique_ptr<Live> live;  ///< null without a board
+  Jobs jobs;
   std::atomic<std::size_t> streams = 0;
   httplib::Server http;
   int port = 0;
@@ -228,8 +229,14 @@ struct Server::Parts {
     send(response, {{"stops", std::move(stops)}});
   }
 
-  void submit(const Request& request, Response& response) {
+  void submit(Request request, Response& response) {
     if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is not a job");
+    if (request.commission) {
+      board().require_command(request.commission->owner);
+      request.commission->device = board().device();
+      request.commission->is_linear =
+          read_drive(folder.existing(request.models.front())).data.kind == sim::DriveKind::linear;
+    }
     send(response, {{"id", jobs.submit(request)}});
   }
 
@@ -389,8 +396,13 @@ struct Server::Parts {
     });
   }
 
-  Parts(int wanted_port, const LiveDevice& device) {
-    if (!device.device.empty()) live.emplace(folder, device);
+  Jobs::Commission commission() {
+    if (!live) return {};
+    return [this](const Request& request, const Jobs::Tell& tell) { return live->commission(request, tell); };
+  }
+
+  Parts(int wanted_port, const LiveDevice& device)
+      : live(device.device.empty() ? nullptr : std::make_unique<Live>(folder, device)), jobs(folder, commission()) {
     http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     // One request for each connection, so that the unread rest of a refused request is not parsed as another.
     http.set_keep_alive_max_count(1);

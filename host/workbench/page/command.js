@@ -13,6 +13,8 @@ let queue = Promise.resolve();
 const listeners = new Set();
 
 export const commands = () => key !== "";
+/** For a job that needs the command. */
+export const ownerKey = () => key;
 /** The number of this page's claim, as in the board's state. */
 export const claimNumber = () => number;
 

@@ -4,17 +4,18 @@ import { fileAddress, get, post } from "./exchange.js";
 
 /** @type {any[]} latest first */
 export let jobs = [];
-const listeners = [];
-const isOpen = (job) => job.state === "queued" || job.state === "running";
+const listeners = new Set();
+export const isOpen = (job) => job.state === "queued" || job.state === "running";
 /** @type {Set<number>|undefined} jobs that had ended at the last poll, because a short job may never be seen running */
 let endedBefore;
 let timer = 0;
 
-/** Registers a listener that receives the jobs that have ended since the last poll.
+/** Registers a listener that receives the jobs that have ended since the last poll; returns a function that ends this.
  * @param {(ended: any[]) => void} listener
  */
 export function onJobs(listener) {
-  listeners.push(listener);
+  listeners.add(listener);
+  return () => listeners.delete(listener);
 }
 
 export async function lookAtJobs() {
@@ -56,10 +57,11 @@ export function whole(job) {
   return get("/api/jobs/" + job.id);
 }
 
-const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", adjust: "Setting values", improve: "Adding significant effects" };
+const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", adjust: "Setting values", improve: "Adding significant effects", commission: "Commissioning" };
 
 /** @param {any} job */
 export function titleOf(job) {
+  if (job.request.do === "commission") return kVerbs.commission + " axis " + job.request.axis + ": " + job.request.folder;
   const kind = job.request.kind ? " " + job.request.kind.replaceAll("_", " ") : "";
   return (kVerbs[job.request.do] || job.request.do) + kind + ": " + job.request.model;
 }
@@ -69,7 +71,7 @@ export function progressBars() {
   return jobs.filter(isOpen).reverse().map((job) => {
     const known = job.state === "running" && job.share > 0;
     return el("div", { className: "progress", id: "progress-" + job.id },
-      el("span", {}, titleOf(job) + (job.state === "queued" ? " (waits)" : known ? " · " + percent(job.share) : "")),
+      el("span", {}, titleOf(job) + (job.state === "queued" ? " (waits)" : known ? " · " + percent(job.share) : "") + (job.message ? " · " + job.message : "")),
       el("progress", known ? { max: 1, value: job.share, "aria-label": titleOf(job) } : { "aria-label": titleOf(job) }),
       el("button", { type: "button", onclick: () => cancel(job) }, "Cancel"));
   });
@@ -84,7 +86,7 @@ export function showJobs(place) {
     commandLine(job.command),
     el("div", { className: "row" },
       job.state === "done" && job.report ? el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Whole report") : null,
-      isOpen(job) ? el("button", { type: "button", onclick: () => cancel(job) }, "Cancel") : el("button", { type: "button", onclick: () => begin(job.request) }, "Run again"))));
+      isOpen(job) ? el("button", { type: "button", onclick: () => cancel(job) }, "Cancel") : job.request.do === "commission" ? el("a", { href: "#live" }, "Continue in Live") : el("button", { type: "button", onclick: () => begin(job.request) }, "Run again"))));
   place.replaceChildren(el("h1", {}, "Jobs"),
     el("p", { className: "lead" }, "Jobs, latest first. Results are in the subfolder “workbench”; new models are beside their original."),
     rows.length ? el("ol", { className: "jobs" }, ...rows) : el("p", { className: "soft" }, "None yet."));

@@ -2,6 +2,7 @@
 import { board, closeStream, lookAtBoard, onBoard, state, stream } from "./board.js";
 import { showParameters } from "./board_parameters.js";
 import { giveRoles, loadFolder } from "./choice.js";
+import { commissionPanel } from "./commission.js";
 import { commandLine, el, notice } from "./elements.js";
 import { post } from "./exchange.js";
 import { motionPanel } from "./motion.js";
@@ -197,7 +198,7 @@ export async function showLive(place) {
   place.replaceChildren(el("div", { className: "row head" }, el("h1", {}, "Live"), el("span", { className: "soft" }, board.board || ""), counts), problem,
     motionPanel(leaving), tools,
     el("figure", { className: "scope-frame" }, canvas, el("p", { className: "soft" }, "Drag: zoom. Click: cursor A, with Shift: B. Double click: go on. Shaded: rows that were lost.")),
-    el("p", { id: "saved", role: "status" }), el("div", { className: "scroll table" }, readings), channelChoice(), triggerPanel(), showParameters(leaving));
+    el("p", { id: "saved", role: "status" }), el("div", { className: "scroll table" }, readings), channelChoice(), triggerPanel(), showParameters(leaving), commissionPanel(leaving));
   pointers(canvas);
   const redraw = () => scope?.due();
   window.addEventListener("resize", redraw);

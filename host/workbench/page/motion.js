@@ -41,10 +41,12 @@ export function motionPanel(leaving) {
     const enable = el("button", { type: "button", id: "enable-" + axis.name, onclick: () => send("enable", axis.name) }, "Enable");
     const disable = el("button", { type: "button", id: "disable-" + axis.name, onclick: () => send("disable", axis.name) }, "Disable");
     const home = el("button", { type: "button", onclick: () => send("home", axis.name) }, "Home"), here = el("button", { type: "button", title: "The present place becomes home", onclick: () => send("home_here", axis.name) }, "Home is here");
+    const target = el("input", { type: "number", step: "any", "aria-label": "Position to move " + axis.name + " to", onchange: () => update() });
+    const go = el("button", { type: "button", id: "move-" + axis.name, title: "Moves to this position, once the axis is homed", onclick: () => send("move", axis.name, { position: Number(target.value) }) }, "Move to");
     const moves = [jog(-1), jog(1), axis.homes ? home : here];
     const update = () => {
       const now = state?.axes[board.axes.indexOf(axis)];
-      if (!now) return [enable, disable, ...moves].forEach((button) => (button.disabled = true));
+      if (!now) return [enable, disable, go, ...moves].forEach((button) => (button.disabled = true));
       const isEnabled = now.state === "enabled";
       told.textContent = now.state;
       told.className = "badge" + (now.fault ? " bad" : isEnabled ? " good" : "");
@@ -53,8 +55,9 @@ export function motionPanel(leaving) {
       enable.disabled = !commands() || now.state !== "ready";
       disable.disabled = !commands() || !["enabled", "starting"].includes(now.state);
       moves.forEach((button) => (button.disabled = !commands() || !isEnabled));
+      go.disabled = !commands() || !isEnabled || !now.homed || target.value === "";
     };
-    return { update, element: el("div", { className: "axis" }, el("strong", {}, axis.name), told, where, enable, disable, el("span", { className: "row" }, moves[0], el("label", {}, speed, " " + axis.unit + "/s"), moves[1]), moves[2], fault) };
+    return { update, element: el("div", { className: "axis" }, el("strong", {}, axis.name), told, where, enable, disable, el("span", { className: "row" }, moves[0], el("label", {}, speed, " " + axis.unit + "/s"), moves[1]), moves[2], el("span", { className: "row" }, go, el("label", {}, target, " " + axis.unit)), fault) };
   });
   const who = el("span", { className: "soft", id: "who", role: "status" });
   const take = el("button", { type: "button", id: "claim", className: "primary", onclick: claim }, "Take the command"), give = el("button", { type: "button", id: "release", onclick: release }, "Give it back");

@@ -8,6 +8,7 @@
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/board_report.hpp"
+#include "host/device/capture_wish.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/live/board_command.hpp"
@@ -56,6 +57,39 @@ TEST(BoardWatch, StreamsEveryRowOnceAndBeginsAnewWithOtherChannels) {
   EXPECT_EQ(rows.number.size(), 50U);
   EXPECT_EQ(settings.channels, (std::vector{firmware::Channel::dac_code, firmware::Channel::counts}));
   EXPECT_THROW(watch.rows(second.epoch, 1, 10, 60, settings), host::Failure) << "no channel of this axis";
+}
+
+TEST(BoardWatch, EndsItsStreamForAnotherProgramThatCaptures) {
+  const BoardAtASocket board(firmware_test::paper_values());
+  BoardWatch watch(opener(board));
+  ASSERT_TRUE(wait_until([&] { return watch.picture().end > 10; }));
+  host::BoardClient other = board.client();
+  firmware::CaptureRequest request;
+  request.channels[0] = 1;
+  other.take_capture(request);
+  EXPECT_FALSE(host::is_capture_wished(other.name())) << "it has it";
+  EXPECT_TRUE(wait_until([&] { return !watch.picture().message.empty(); })) << "the reason is told";
+  other.stop_capture();
+  EXPECT_TRUE(wait_until([&] { return watch.picture().epoch > 1 && watch.picture().end > 10; }));
+}
+
+TEST(BoardWatch, ALentBoardCapturesForAnotherProgramAndStreamsAgainAfterwards) {
+  const BoardAtASocket board(firmware_test::paper_values());
+  BoardWatch watch(opener(board));
+  ASSERT_TRUE(wait_until([&] { return watch.picture().end > 10; }));
+  const std::uint64_t first = watch.picture().epoch;
+  host::BoardClient other = board.client();
+  firmware::CaptureRequest request;
+  request.channels[0] = 1;
+  EXPECT_THROW(other.start_capture(request), host::Failure) << "a board runs one capture at a time";
+  watch.lend("lent");
+  other.start_capture(request);
+  EXPECT_EQ(watch.picture().message, "lent");
+  EXPECT_THROW(watch.arm({}, {}), host::Failure);
+  other.stop_capture();
+  EXPECT_EQ(watch.picture().epoch, first);
+  watch.give_back();
+  EXPECT_TRUE(wait_until([&] { return watch.picture().epoch > first && watch.picture().end > 10; }));
 }
 
 TEST(BoardWatch, NamesUnitsAndRefusesWhatIsNoSetOfChannels) {

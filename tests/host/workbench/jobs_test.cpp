@@ -5,17 +5,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 
+#include "host/cancellation.hpp"
 #include "host/exit_codes.hpp"
 #include "host/read_file.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 #include "tests/host/workbench/served_folder.hpp"
+#include "tests/wait_until.hpp"
 
 namespace {
 
 using host::workbench::Folder;
 using host::workbench::Jobs;
+using host::workbench::parse_request;
+using host::workbench::Request;
 using nlohmann::json;
 
 /// Runs the command line that the page shows; its JSON goes to standard output instead of the file of the job.
@@ -199,6 +204,57 @@ TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
   EXPECT_EQ(jobs.state(2)->at("state"), "interrupted");
   EXPECT_FALSE(jobs.state(3));
   EXPECT_EQ(jobs.list()["jobs"].size(), 2U);
+}
+
+TEST(Jobs, ACommissioningsCommandHasTheUnitsOfTheDrive) {
+  Request request = parse_request(
+      R"({"do":"commission","model":"d.toml","axis":"x","box":"travel=80mm,time=9s","overtravel_mm":5,"folder":"x","from":"look"})");
+  const std::string begin = "axistool commission x --drive d.toml --box travel=80mm,time=9s -o x --overtravel ";
+  EXPECT_EQ(command_line(request, {}), begin + "5 --from look");
+  request.commission->is_linear = true;
+  EXPECT_EQ(command_line(request, {}), begin + "0.005 --from look");
+}
+
+TEST(Jobs, ACommissioningTellsItsStepRunsAloneAndContinues) {
+  const WorkingFolder here;
+  const Folder folder;
+  std::atomic<bool> is_done = false;
+  Jobs jobs(folder, [&](const Request& request, const Jobs::Tell& tell) {
+    tell(0.25, "a step");
+    while (!is_done && !host::is_cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (request.commission->from.empty()) throw host::Failure(host::ExitCode::device_fault, "stopped");
+    return json{{"page", "x/page.html"}};
+  });
+  const auto becomes = [&](int id, const std::string& state) {
+    return wait_until([&] { return jobs.state(id)->at("state") == state; });
+  };
+  json text = {{"do", "commission"}, {"owner", "key"}, {"model", "d.toml"}, {"axis", "x"}, {"box", "travel=80"}};
+  const int first = jobs.submit(parse_request(text.dump()));
+  ASSERT_TRUE(wait_until([&] { return jobs.state(first)->at("message") == "a step"; }));
+  EXPECT_EQ(jobs.state(first)->at("share"), 0.25);
+  EXPECT_FALSE(jobs.state(first)->at("request").contains("owner"));
+  EXPECT_EQ(jobs.state(first)->at("command"),
+            "axistool commission x --drive d.toml --box travel=80 -o x --json workbench/0001-commission.json");
+  EXPECT_THROW(jobs.submit(parse_request(text.dump())), host::Failure) << "one at a time";
+  is_done = true;
+  ASSERT_TRUE(becomes(first, "failed"));
+  EXPECT_EQ(jobs.state(first)->at("next"), "look");
+  text["folder"] = "x";
+  text["from"] = "look";
+  EXPECT_THROW(jobs.submit(parse_request(text.dump())), host::Failure) << "there is no commissioning in the folder";
+  here.folder.write("x/commission.json", "{}");
+  const int second = jobs.submit(parse_request(text.dump()));
+  ASSERT_TRUE(becomes(second, "done"));
+  EXPECT_EQ(jobs.state(second)->at("report"), "x/page.html");
+  is_done = false;
+  text.erase("folder");
+  text.erase("from");
+  const int third = jobs.submit(parse_request(text.dump()));
+  ASSERT_TRUE(wait_until([&] { return jobs.state(third)->at("message") == "a step"; }));
+  jobs.cancel(third);
+  EXPECT_TRUE(becomes(third, "cancelled"));
+  Jobs without(folder);
+  EXPECT_THROW(without.submit(parse_request(text.dump())), host::Failure) << "without a board";
 }
 
 TEST(Jobs, ACancelledJobEndsAtOnceAndTheNextOneBegins) {

@@ -221,6 +221,22 @@ class Live(ServedPage, SimulatedBoard):
         self.quiet()
 
     @on_a_free_computer
+    def test_moves_to_a_position_once_home_is_known(self) -> None:
+        self.take_and_enable()
+        target = self.until("[aria-label='Position to move x to']")
+        target.send_keys("12.5" + Keys.TAB)
+        self.assertFalse(self.browser.find_element(By.ID, "move-x").is_enabled(), "not before the axis is homed")
+        self.browser.execute_script("[...document.querySelectorAll('.axis button')].find((one) => one.textContent === 'Home is here').click()")
+        self.click("#move-x:enabled")
+        self.soon(lambda: abs(self.at_mm() - 12.5) < 0.01, "the axis is there")
+        self.assertIn("axistool move x 12.5 --device sim", self.texts(".motion .command code"))
+        target.clear()
+        target.send_keys("5000" + Keys.TAB)
+        self.click("#move-x:enabled")
+        self.soon(lambda: any("monitor.travel_min" in text for text in self.texts("#notice")), "not so far without travel limits")
+        self.assertAlmostEqual(self.stands(), 12.5, delta=0.01)
+
+    @on_a_free_computer
     def test_an_axis_stops_when_its_page_is_killed(self) -> None:
         self.take_and_enable()
         self.set_speed("2")

@@ -64,7 +64,13 @@ TEST(Request, WhatIsNoRequestIsRefusedWithTheFieldsName) {
       {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"plot":["error","speed"]})", "plot"},
       {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"plot":["speed"]})", "plot"},
       {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"map":["speed","colour"]})", "map"},
-      {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"cogging","output":"x"})", "output"}};
+      {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"cogging","output":"x"})", "output"},
+      {R"({"do":"commission","model":"m.toml","axis":"x"})", "box"},
+      {R"({"do":"commission","model":"m.toml","axis":"","box":"travel=1"})", "axis"},
+      {R"({"do":"commission","model":"m.toml","axis":"x","box":"travel=1","overtravel_mm":-1})", "overtravel_mm"},
+      {R"({"do":"commission","model":"m.toml","axis":"x","box":"travel=1","folder":"../x"})", "folder"},
+      {R"({"do":"commission","model":"m.toml","axis":"x","box":"travel=1","from":"look"})", "from"},
+      {R"({"do":"commission","model":"m.toml","axis":"x","box":"travel=1","to":"nowhere"})", "nowhere"}};
   for (const auto& [text, field] : wrong) {
     const auto [status, told] = served.post_text("/api/jobs", text);
     EXPECT_EQ(status, 400) << text;

@@ -33,6 +33,10 @@ class ServedPage:
         self.folder = folder
         self.program = subprocess.Popen([PROGRAM, "serve", str(self.folder), "--no-browser", *options], stdout=subprocess.PIPE, text=True)
         self.url = self.program.stdout.readline().strip()
+        self.browse()
+
+    def browse(self) -> None:
+        """Opens a browser of its own on the program."""
         self.profile = tempfile.mkdtemp(dir=self.folder.parent, prefix="axis-profile-")
         options = webdriver.ChromeOptions()
         for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1440,1000", f"--user-data-dir={self.profile}"):
@@ -42,9 +46,12 @@ class ServedPage:
         self.browser.set_page_load_timeout(60)
         self.browser.get(self.url)
 
-    def close(self) -> None:
+    def leave(self) -> None:
         self.browser.quit()
         shutil.rmtree(self.profile, True)
+
+    def close(self) -> None:
+        self.leave()
         self.program.send_signal(signal.SIGTERM)
         code, printed = self.program.wait(30), self.program.stdout.read()
         self.program.stdout.close()

@@ -15,7 +15,7 @@ MODEL = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases/none/case-00/model.tom
 
 
 class SimulatedBoard(unittest.TestCase):
-    def start_board(self, axes: int, host_timeout_s: float) -> None:
+    def start_board(self, axes: int, host_timeout_s: float, is_fitted: bool = True) -> None:
         self.place = Path(tempfile.mkdtemp(prefix="axis-board-"))
         self.addCleanup(shutil.rmtree, self.place, True)
         self.own = self.place / "own"
@@ -25,6 +25,8 @@ class SimulatedBoard(unittest.TestCase):
         self.addCleanup(self.board.wait, 30)
         self.addCleanup(self.board.terminate)
         WebDriverWait(None, 30).until(lambda _: (self.own / "axis-sim.socket").exists())
+        if not is_fitted:
+            return
         self.parameters = self.place / "x.toml"
         self.tool("design", str(MODEL), "-o", str(self.parameters))
         for axis in "xyza"[:axes]:
