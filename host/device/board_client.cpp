@@ -340,7 +340,7 @@ void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
 }
 
 void BoardClient::take_capture(const firmware::CaptureRequest& wanted) {
-  constexpr milliseconds kPatience{2000}, kPause{20};  // a workbench looks ten times a second
+  constexpr milliseconds kUntilGiven{2000}, kPause{20};  // a workbench looks ten times a second
   samples_.clear();
   Message message;
   message.type = MessageType::start_capture;
@@ -348,7 +348,7 @@ void BoardClient::take_capture(const firmware::CaptureRequest& wanted) {
   Message reply = reply_to(message, patience_);
   if (reply.status == Status::others_capture) {
     const CaptureWish wish(name());
-    const auto until = now() + kPatience;
+    const auto until = now() + kUntilGiven;
     while (reply.status == Status::others_capture && now() < until) {
       wait(kPause);
       reply = reply_to(message, patience_);

@@ -143,6 +143,7 @@ class Workbench(ServedPage, unittest.TestCase):
         browser = self.browser
         downloads = self.folder / "downloads"
         browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(downloads)})
+        self.until("[aria-label='Role of train-jog.csv']")
         browser.find_element(By.CSS_SELECTOR, "[aria-label='Role of train-jog.csv'] option[value=off]").click()
         WebDriverWait(browser, PATIENCE_S).until(lambda _: "train-jog" not in " ".join(self.texts("#content > div > .command code")))
         canvas = self.until("#content .plot .canvas canvas:last-of-type")
@@ -339,6 +340,7 @@ class Workbench(ServedPage, unittest.TestCase):
 
     def test_file_names_are_text(self) -> None:
         name = "<img src=x onerror=alert(1)>.csv"
+        self.until("#content .verdict")  # the first page has no request in progress that would lack its cookie
         shutil.copy(CASE / "train-jog.csv", self.folder / name)
         self.browser.delete_all_cookies()
         opener = self.folder / "opener.html"  # as serve opens the page: the token is in no command line
