@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-/// The file of a board; -1 if there is none.
+/// The file of a board; -1 if it cannot be opened.
 int open_file(const std::string& board, int flags) {
   std::string name = board;
   std::ranges::replace_if(

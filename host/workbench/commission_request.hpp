@@ -29,7 +29,7 @@ void put(const CommissionRequest& request, nlohmann::json& document);
 /// The equivalent command, which asks before each motion.
 std::string command_line(const CommissionRequest& request, const std::string& sheet);
 
-/// First step that is not done; "" if there is none or no commissioning in the folder.
+/// First step that is not done; "" if all are done or the folder holds no commissioning.
 std::string next_step(const std::string& folder);
 
 }  // namespace host::workbench
