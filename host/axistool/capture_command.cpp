@@ -10,6 +10,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/device/capture.hpp"
 #include "host/device/capture_journal.hpp"
+#include "host/device/closed_loops.hpp"
 #include "host/device/motion.hpp"
 #include "host/device/quantity.hpp"
 #include "host/device/triggered_capture.hpp"
@@ -165,10 +166,11 @@ void run(const CaptureArguments& arguments) {
   double seconds = settings.duration_s;
   for (const host::JogStep& jog : settings.jogs) seconds += arguments.duration_s > 0.0 ? 0.0 : jog.duration_s;
   const auto mask = static_cast<std::uint8_t>(1u << settings.axis);
-  const bool enables = !settings.jogs.empty() && !host::are_enabled(board, mask);
-  if (enables) {
-    require_consent(arguments, fmt::format("Enable axis {} and jog it?", arguments.axis));
-    host::enable_and_wait(board, mask);
+  std::optional<host::ClosedLoops> loop;
+  if (!settings.jogs.empty()) {
+    if (!host::are_enabled(board, mask))
+      require_consent(arguments, fmt::format("Enable axis {} and jog it?", arguments.axis));
+    loop.emplace(board, mask);
   }
   host::Capture capture;
   host::CaptureJournal journal(arguments.output, settings, name_of_drive(arguments));
@@ -188,7 +190,7 @@ void run(const CaptureArguments& arguments) {
       throw host::Failure(failure.code, failure.what() + journal.remark());
     }
   }
-  if (enables) host::disable_and_wait(board, mask);
+  if (loop) loop->open();
   write(arguments, capture, settings, axis);
   journal.remove();
   host::require_no_loss(capture, arguments.output);

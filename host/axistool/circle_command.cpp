@@ -8,6 +8,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/program_run.hpp"
+#include "host/device/closed_loops.hpp"
 #include "host/device/motion.hpp"
 #include "host/model/model_file.hpp"
 #include "host/path/path_extents.hpp"
@@ -81,18 +82,14 @@ std::vector<std::string> make(CircleArguments arguments) {
                         fmt::format("{}: cannot make this folder: {}", arguments.folder, fault.message()));
   catch_signals();
   constexpr std::uint8_t kMask = 3;
-  const bool was_enabled = host::are_enabled(board, kMask);
-  if (!was_enabled) host::enable_and_wait(board, kMask);
-  const auto leave = [&] {
-    if (!was_enabled) host::disable_and_wait(board, kMask);
-  };
+  host::ClosedLoops loops(board, kMask);
   std::vector<std::string> files;
   for (const Pass& pass : passes_of(arguments)) {
     arguments.file = "circle " + pass.name;
     arguments.capture = (std::filesystem::path(arguments.folder) / (pass.name + ".csv")).string();
     const ProgramOutcome outcome = run_program(board, machine, true, arguments, pass.program);
     if (outcome.end != firmware::PathEnd::completed) {
-      leave();
+      loops.open();
       for (const std::size_t axis : machine.scale.axes)
         host::require_no_fault(board.status(), static_cast<std::uint8_t>(axis));
       throw host::Failure(
@@ -102,7 +99,7 @@ std::vector<std::string> make(CircleArguments arguments) {
     files.push_back(arguments.capture);
     if (talks(arguments)) fmt::print("{}: contour error {:.1f} um at most\n", arguments.capture, outcome.worst_um);
   }
-  leave();
+  loops.open();
   return files;
 }
 

@@ -11,6 +11,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/program_run.hpp"
+#include "host/device/closed_loops.hpp"
 #include "host/device/motion.hpp"
 #include "host/identify/linear_axis.hpp"
 #include "host/known_by_current.hpp"
@@ -242,11 +243,10 @@ void run(const RunArguments& arguments) {
   require_operator(arguments, planned.path);
   require_consent(arguments, fmt::format("Run {}? The axes move within {}.", arguments.file, box_text(extents, axes)));
   catch_signals();
-  const bool was_enabled = host::are_enabled(board, mask);
-  if (!was_enabled) host::enable_and_wait(board, mask);
+  host::ClosedLoops loops(board, mask);
   // Begins at the present references, because the loops are closed now.
   const ProgramOutcome outcome = run_program(board, machine, relative, arguments, text);
-  if (!was_enabled) host::disable_and_wait(board, mask);
+  loops.open();
   tell(outcome, arguments, document);
   if (!arguments.json.empty()) write_json(document, arguments.json);
   if (!outcome.failure.empty()) throw Failure(ExitCode::answer_is_no, outcome.failure);

@@ -6,10 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
-#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/device/closed_loops.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 
@@ -112,25 +113,6 @@ bool is_open_loop(const Excitation& excitation) {
   return excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
 }
 
-/// Closes the loop if the excitation needs it; afterwards opens it again if it was open before.
-class Loop {
- public:
-  Loop(BoardClient& board, std::uint8_t axis, bool is_needed)
-      : board_(board), mask_(static_cast<std::uint8_t>(1u << axis)) {
-    if (!is_needed) return;
-    was_open_ = board.status().axis.at(axis).state != static_cast<std::uint8_t>(firmware::SupervisorState::enabled);
-    if (was_open_) enable_and_wait(board, mask_);
-  }
-  void open() {
-    if (was_open_) disable_and_wait(board_, mask_);
-  }
-
- private:
-  BoardClient& board_;
-  std::uint8_t mask_;
-  bool was_open_ = false;
-};
-
 }  // namespace
 
 ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
@@ -165,10 +147,11 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     return state.phase == static_cast<std::uint8_t>(ExcitationPhase::done);
   };
   bool is_capturing = false;
+  std::optional<ClosedLoops> loop;  // outlives the handler below, so that the loop opens after the excitation stopped
   const auto run_one = [&](std::size_t index) {
     const std::int64_t offset = board.status().axis.at(axis).counts() - start;
     const Excitation excitation = make(index, static_cast<double>(offset) * scale.encoder_resolution);
-    Loop loop(board, axis, !is_open_loop(excitation));
+    if (!is_open_loop(excitation)) loop.emplace(board, static_cast<std::uint8_t>(1u << axis));
     for (const auto& part : entry_requests(excitation, axis)) board.load_excitation(part);
     firmware::ExcitationRequest request = excitation.request;
     request.axis = axis;
@@ -189,7 +172,8 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
         is_asked = true;
       }
     }
-    loop.open();
+    if (loop) loop->open();
+    loop.reset();
     state.elapsed += outcome.state.elapsed;
     state.farthest = std::max(outcome.state.farthest, static_cast<std::int32_t>(std::abs(offset)) + state.farthest);
     state.fastest = std::max(outcome.state.fastest, state.fastest);
@@ -207,7 +191,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     outcome.capture.dropped_by_board = board.stop_capture().dropped;
     while (rows.fetch(milliseconds(50))) continue;
     outcome.capture.lost = lost_rows(outcome.capture.number);
-  } catch (const Failure&) {
+  } catch (...) {  // of the board, or of progress()
     try {
       board.stop_excitation();
       if (is_capturing) board.stop_capture();

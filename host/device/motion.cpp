@@ -119,10 +119,15 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
     throw Failure(ExitCode::time_out, "the board does not enable the axis; `axistool doctor` checks further");
 }
 
-bool are_enabled(BoardClient& board, std::uint8_t mask) {
+std::uint8_t enabled_axes(BoardClient& board, std::uint8_t mask) {
   const BoardState status = board.status();
-  return for_all(mask, [&](std::uint8_t axis) { return state_of(status, axis) == SupervisorState::enabled; });
+  unsigned enabled = 0;
+  for (unsigned axis = 0; mask >> axis != 0; ++axis)
+    if ((mask >> axis & 1) != 0 && state_of(status, axis) == SupervisorState::enabled) enabled |= 1u << axis;
+  return static_cast<std::uint8_t>(enabled);
 }
+
+bool are_enabled(BoardClient& board, std::uint8_t mask) { return enabled_axes(board, mask) == mask; }
 
 void disable_and_wait(BoardClient& board, std::uint8_t mask) {
   board.disable(mask);

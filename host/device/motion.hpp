@@ -17,6 +17,9 @@ inline constexpr std::chrono::milliseconds kHeartbeat{20};
 /// Failure(device_fault, refused, time_out).
 void enable_and_wait(BoardClient& board, std::uint8_t mask);
 
+/// The axes of the mask whose loops are closed.
+std::uint8_t enabled_axes(BoardClient& board, std::uint8_t mask);
+
 /// Whether all loops of the mask are closed.
 bool are_enabled(BoardClient& board, std::uint8_t mask);
 

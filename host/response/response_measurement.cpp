@@ -8,9 +8,8 @@
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
-#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/device/closed_loops.hpp"
 #include "host/device/excitation_end.hpp"
-#include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/response/axis_controller.hpp"
 #include "host/response/plant_fit.hpp"
@@ -154,29 +153,6 @@ class Planner {
   double period_ = 0.0, period_s_ = 0.0, run_s_ = 0.0, top_Hz_ = 0.0;
 };
 
-/// Opens the loop again at the end if it was open before, unless the link is lost.
-class ClosedMeanwhile {
- public:
-  ClosedMeanwhile(BoardClient& board, std::uint8_t axis) : board_(board), mask_(static_cast<std::uint8_t>(1u << axis)) {
-    was_open_ = board.status().axis.at(axis).state != static_cast<std::uint8_t>(firmware::SupervisorState::enabled);
-    if (was_open_) enable_and_wait(board, mask_);
-  }
-  ~ClosedMeanwhile() {
-    if (!was_open_) return;
-    try {
-      disable_and_wait(board_, mask_);
-    } catch (const Failure&) {  // keeps the earlier failure, which is more informative
-    }
-  }
-  ClosedMeanwhile(const ClosedMeanwhile&) = delete;
-  ClosedMeanwhile& operator=(const ClosedMeanwhile&) = delete;
-
- private:
-  BoardClient& board_;
-  std::uint8_t mask_;
-  bool was_open_ = false;
-};
-
 }  // namespace
 
 std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
@@ -193,7 +169,7 @@ void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector
                         const firmware::ParameterValues& values, const ExcitationScale& scale,
                         const std::function<bool()>& stop, std::vector<Record>& records,
                         const std::function<void(std::size_t, std::size_t)>& progress) {
-  const ClosedMeanwhile closed(board, axis);
+  const ClosedLoops loop(board, static_cast<std::uint8_t>(1u << axis));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ExcitationOutcome outcome = run_excitation(board, axis, runs[i], values, scale, stop);
     Record record = capture_record(outcome.capture, outcome.settings, std::string(firmware::kAxisNames.at(axis)));
@@ -217,7 +193,8 @@ void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& pla
   const Planner bands(part, scale, parameters);
   if (bands.least_s() > part.box.time_s) part.box.time_s = plan.box.time_s;
   const std::vector<Excitation> runs = plan_response(part, scale, parameters);
-  const ClosedMeanwhile closed(board, axis);  // also during the analysis: opening the loop makes the axis ring
+  const ClosedLoops loop(
+      board, static_cast<std::uint8_t>(1u << axis));  // also during the analysis: opening the loop makes the axis ring
   make_response_runs(board, axis, runs, values, scale, stop, records, progress);
   double left_s = plan.box.time_s - bands.run_s() * static_cast<double>(runs.size());
   const PlantFit fit = fit_plant(frequency_response(records));
