@@ -6,7 +6,7 @@ import { stopButton } from "./command.js";
 import { el, errorBox } from "./elements.js";
 import { follow, keys, showEffects } from "./effects.js";
 import { showGallery } from "./gallery.js";
-import { showLoop } from "./loop.js";
+import { leaveLoop, showLoop } from "./loop.js";
 import { leaveLive, liveKey, showLive } from "./live.js";
 import { showOpening } from "./opening.js";
 import { showRecord } from "./record.js";
@@ -42,6 +42,7 @@ async function show() {
 function goTo() {
   leaveLive();
   leaveCompare();
+  leaveLoop();
   content.classList.remove("waiting");
   forgetPlots();
   content.replaceChildren();
