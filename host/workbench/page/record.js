@@ -73,9 +73,10 @@ class Zoom {
     return this.pictures.filter(covers).sort((a, b) => a.rows - b.rows)[0] || this.shown;
   }
 
+  /** Whether the buckets are as small as those that the program would send. It rounds the range to whole rows. */
   isFine() {
     const best = this.best();
-    return best && best.share === 1 && (best.rows === 1 || best.rows * this.width() < 2 * (this.to - this.from));
+    return best && best.share === 1 && (best.rows === 1 || best.rows * this.width() < 2 * (this.to - this.from + 2));
   }
 
   draw() {
@@ -225,7 +226,7 @@ export async function showPicture(place, record) {
     const values = zoom.scope.stream.names.map((name, channel) => ({ name, range: zoom.scope.at(channel, row) }));
     reading.textContent = timeOf(latest, row) + " s: " + values.map(({ name, range }) => name + " " + (range ? [...new Set(range.map(short))].join(" to ") : "–")).join(", ");
   });
-  const redraw = () => (canvas.isConnected ? zoom.draw() : window.removeEventListener("resize", redraw));
+  const redraw = () => (canvas.isConnected ? zoom.look(zoom.from, zoom.to) : window.removeEventListener("resize", redraw));
   window.addEventListener("resize", redraw);
   canvas.zoom = zoom; // for tests
   try {

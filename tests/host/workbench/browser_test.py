@@ -363,7 +363,6 @@ class Workbench(ServedPage, unittest.TestCase):
         self.assertLessEqual(highest(whole), spike)
         self.assertGreater(highest(whole) + whole["rows"], spike)
         self.keep("record")
-        self.keep_on_phone("phone-record")
         # Drag over the spike, where the picture has it; then closer by the wheel's way, until rows are shown.
         box = browser.execute_script("const b = arguments[0].getBoundingClientRect(); return [b.left, b.width]", canvas)
         left, width = 74, box[1]
@@ -385,6 +384,7 @@ class Workbench(ServedPage, unittest.TestCase):
         self.assertIn("axistool cut long.csv --from 100 --to 140", " ".join(self.texts(".command code")))
         kept = (self.folder / "long-100-140s.csv").read_text().splitlines()
         self.assertTrue(kept[-1].startswith("140"), kept[-1])
+        self.keep_on_phone("phone-record")
         self.quiet()
 
     def test_file_names_are_text(self) -> None:
