@@ -10,6 +10,7 @@
 #include <functional>
 #include <utility>
 
+#include "host/cancellation.hpp"
 #include "host/compare/residual_figures.hpp"
 #include "host/compare/residual_spectrum.hpp"
 #include "host/evidence/measured_sensors.hpp"
@@ -30,7 +31,9 @@ ComparedModel compare_with(const std::string& path, const sim::DriveDescription&
   sim::DriveDescription completed = with_measured_sensors(model, measured);
   std::vector<FigureRecord> counted;
   for (const Record* record : measured.training_records()) counted.push_back({record});
+  throw_if_cancelled();
   RecordSet set = figure_set(model, counted, window_s);
+  throw_if_cancelled();
   ModelComparison comparison = compare_model(completed, measured, set);
   return {path, std::move(completed), std::move(measured), std::move(set), std::move(comparison)};
 }

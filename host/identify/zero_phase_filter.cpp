@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "host/cancellation.hpp"
+
 namespace host {
 
 using std::numbers::pi;
@@ -76,6 +78,7 @@ void ZeroPhaseLowPass::run_once(std::vector<double>& signal) const {
 }
 
 std::vector<double> ZeroPhaseLowPass::operator()(std::span<const double> signal) const {
+  throw_if_cancelled();  // the longest step of a comparison of a long record
   const std::size_t n = signal.size();
   if (n < 2) return {signal.begin(), signal.end()};
   const std::size_t margin = std::min(extension_, n - 1);

@@ -1,7 +1,6 @@
 #include "host/live/sample_ring.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace host {
 
@@ -43,37 +42,24 @@ void SampleRing::append(std::uint32_t number, std::span<const double> values) {
   }
 }
 
-void SampleRing::widen(Envelope& envelope, std::size_t bucket, std::size_t taken, std::span<const double> low,
-                       std::span<const double> high) {
-  if (taken == 0) return;
-  envelope.taken[bucket] += taken;
-  for (std::size_t k = 0; k < low.size(); ++k) {
-    envelope.low[k][bucket] = std::fmin(envelope.low[k][bucket], low[k]);
-    envelope.high[k][bucket] = std::fmax(envelope.high[k][bucket], high[k]);
-  }
-}
-
 Envelope SampleRing::envelope(std::uint64_t from, std::uint64_t to, std::size_t rows) const {
   const bool by_steps = rows % kStep == 0;
   const std::uint64_t known_steps = (steps_.size() - 1) * kStep;
   const std::uint64_t oldest = by_steps ? (end_ > known_steps ? end_ - known_steps : 0) : begin();
   const std::uint64_t first = (std::max(from, oldest) + rows - 1) / rows, last = std::min(to, end_) / rows;
-  Envelope envelope{first * rows, rows, {}, {}, {}};
   const std::size_t buckets = last > first ? last - first : 0;
-  envelope.taken.resize(buckets);
-  envelope.low.assign(channels_, std::vector<double>(buckets, std::nan("")));
-  envelope.high = envelope.low;
+  Envelope envelope = Envelope::empty(channels_, first * rows, rows, buckets);
   for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
     const std::uint64_t begin = (first + bucket) * rows, end = begin + rows;
     if (by_steps) {
       for (std::uint64_t k = begin / kStep; k < end / kStep; ++k) {
         const Step& step = steps_[k % steps_.size()];
-        widen(envelope, bucket, step.taken, step.low, step.high);
+        envelope.widen(bucket, step.taken, step.low, step.high);
       }
       continue;
     }
     for (std::uint64_t number = begin; number < end; ++number)
-      if (is_taken_[number % rows_]) widen(envelope, bucket, 1, row(number), row(number));
+      if (is_taken_[number % rows_]) envelope.widen(bucket, 1, row(number), row(number));
   }
   return envelope;
 }

@@ -7,15 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace host {
+#include "host/record/envelope.hpp"
 
-/// Extremes of each channel in buckets of equal numbers of rows.
-struct Envelope {
-  std::uint64_t first = 0;                     ///< number of the first row of the first bucket, a multiple of `rows`
-  std::size_t rows = 1;                        ///< of a bucket
-  std::vector<std::size_t> taken;              ///< rows that arrived, of each bucket
-  std::vector<std::vector<double>> low, high;  ///< of each channel and bucket; NaN if no row arrived
-};
+namespace host {
 
 class SampleRing {
  public:
@@ -47,9 +41,6 @@ class SampleRing {
     std::vector<double> low, high;
   };
 
-  /// Adds a row, or an earlier bucket, to the bucket.
-  static void widen(Envelope& envelope, std::size_t bucket, std::size_t taken, std::span<const double> low,
-                    std::span<const double> high);
   std::span<const double> row(std::uint64_t number) const;
 
   std::size_t channels_, rows_;

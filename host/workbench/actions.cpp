@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -40,6 +41,21 @@ namespace {
 void require_files(const Folder& folder, const Request& request) {
   for (const auto* names : {&request.models, &request.train, &request.validate})
     for (const std::string& name : *names) folder.existing(name);
+}
+
+/// Also refuses records for which the page would wait too long.
+void require_comparable(const Folder& folder, const Request& request) {
+  require_files(folder, request);
+  std::uintmax_t bytes = 0;
+  for (const auto* names : {&request.train, &request.validate})
+    for (const std::string& name : *names) bytes += std::filesystem::file_size(name);
+  if (bytes * request.models.size() <= kComparedSize.bytes) return;
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("{} MiB of records: {} may have {} MiB, once for each model. Keep only a part of the record: "
+                  "axistool cut {} --from S --to S -o PART.csv. Or run it in a shell: {}",
+                  bytes * request.models.size() / kMebibyte, kComparedSize.of, kComparedSize.bytes / kMebibyte,
+                  shell_word(request.train.front()), command_line(request, {})));
 }
 
 nlohmann::json identified(const Request& request, const Outputs& outputs) {
@@ -93,7 +109,7 @@ nlohmann::json improved(const Request& request, const sim::DriveDescription& mod
 }  // namespace
 
 std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request) {
-  require_files(folder, request);
+  require_comparable(folder, request);
   std::vector<ComparedModel> models;
   for (const std::string& path : request.models) {
     std::vector<Record> records;
@@ -105,7 +121,7 @@ std::vector<ComparedModel> compared_models(const Folder& folder, const Request& 
 }
 
 Comparison compare(const Folder& folder, const Request& request) {
-  require_files(folder, request);
+  require_comparable(folder, request);
   const sim::DriveDescription first = read_model(request.models.front());
   if (const std::vector<Record> tracks = tracking_records(request.train, first.data); !tracks.empty()) {
     std::vector<TrackingError> errors;
@@ -138,7 +154,7 @@ Comparison compare_trial(const Folder& folder, const Request& request) {
 
 nlohmann::json look_first(const Folder& folder, const Request& request) {
   if (!request.quick) throw Failure(ExitCode::usage, "request, \"quick\": expected true");
-  require_files(folder, request);
+  require_comparable(folder, request);
   for (const std::string& kind : request.absent) known_effect(kind);
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =

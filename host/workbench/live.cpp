@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <iterator>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/board_report.hpp"
@@ -18,6 +17,7 @@
 #include "host/parameters/parameter_names.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/text_format.hpp"
+#include "host/workbench/envelope_text.hpp"
 
 namespace host::workbench {
 
@@ -54,28 +54,6 @@ void require_known_way(const BoardPicture& picture, std::size_t axis, double pos
 }
 
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-void append_numbers(std::string& text, const char* name, const std::vector<std::vector<double>>& channels) {
-  text += fmt::format(",\"{}\":[", name);
-  for (std::size_t k = 0; k < channels.size(); ++k) {
-    text += k == 0 ? "[" : ",[";
-    for (std::size_t i = 0; i < channels[k].size(); ++i) {
-      if (i > 0) text += ',';
-      std::isfinite(channels[k][i]) ? fmt::format_to(std::back_inserter(text), "{:.8g}", channels[k][i])
-                                    : fmt::format_to(std::back_inserter(text), "null");
-    }
-    text += ']';
-  }
-  text += ']';
-}
-
-std::string envelope_text(const Envelope& envelope, std::uint64_t epoch) {
-  std::string text = fmt::format("{{\"epoch\":{},\"first\":{},\"rows\":{},\"taken\":[{}]", epoch, envelope.first,
-                                 envelope.rows, fmt::join(envelope.taken, ","));
-  append_numbers(text, "low", envelope.low);
-  if (envelope.rows > 1) append_numbers(text, "high", envelope.high);
-  return text + "}";
-}
 
 }  // namespace
 

@@ -29,6 +29,8 @@ AXIS_EMBED(axis_workbench_opening, AXIS_PAGE_DIR "/opening.js");
 AXIS_EMBED(axis_workbench_plot_axes, AXIS_PAGE_DIR "/plot_axes.js");
 AXIS_EMBED(axis_workbench_plot_files, AXIS_PAGE_DIR "/plot_files.js");
 AXIS_EMBED(axis_workbench_plot_svg, AXIS_PAGE_DIR "/plot_svg.js");
+AXIS_EMBED(axis_workbench_record, AXIS_PAGE_DIR "/record.js");
+AXIS_EMBED(axis_workbench_repeat, AXIS_PAGE_DIR "/repeat.js");
 AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
 AXIS_EMBED(axis_workbench_stops, AXIS_PAGE_DIR "/stops.js");
 
@@ -64,6 +66,8 @@ const std::vector<PageFile>& page_files() {
       {"plot_axes.js", kScript, AXIS_PAGE_FILE(plot_axes)},
       {"plot_files.js", kScript, AXIS_PAGE_FILE(plot_files)},
       {"plot_svg.js", kScript, AXIS_PAGE_FILE(plot_svg)},
+      {"record.js", kScript, AXIS_PAGE_FILE(record)},
+      {"repeat.js", kScript, AXIS_PAGE_FILE(repeat)},
       {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
       {"stops.js", kScript, AXIS_PAGE_FILE(stops)},
       {"dygraphs.js", kScript, assets::dygraphs_script()},

@@ -141,10 +141,10 @@ Request parse_request(std::string_view text) {
 
 CutRequest parse_cut(std::string_view text) {
   const nlohmann::json document = object_of(text);
-  require_known(document, {"record", "stretch"});
+  require_known(document, {"record", "stretch", "keep"});
   const std::optional<TimeSpan> stretch = stretch_of(document);
   if (!stretch) refuse("stretch", "expected [FROM, TO] in seconds");
-  return {file_of(text_of(document, "record"), "record"), *stretch};
+  return {file_of(text_of(document, "record"), "record"), *stretch, flag_of(document, "keep")};
 }
 
 OpenRequest parse_open(std::string_view text) {

@@ -38,10 +38,12 @@ struct Request {
 /// missing.
 Request parse_request(std::string_view text);
 
-/// { "record": NAME, "stretch": [FROM, TO] }: the time range to remove from a record.
+/// { "record": NAME, "stretch": [FROM, TO], "keep": whether to keep only it }: the time range to remove from a record,
+/// or to keep as a record of its own.
 struct CutRequest {
   std::string record;
   TimeSpan stretch;
+  bool keep = false;
 };
 CutRequest parse_cut(std::string_view text);
 

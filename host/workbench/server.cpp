@@ -28,6 +28,7 @@
 #include "host/workbench/live_stream.hpp"
 #include "host/workbench/loop.hpp"
 #include "host/workbench/page_files.hpp"
+#include "host/workbench/record_pictures.hpp"
 #include "host/workbench/request.hpp"
 #include "host/workbench/story.hpp"
 
@@ -121,8 +122,9 @@ struct Server::Parts {
   int port = 0;
   std::optional<Access> access;
   std::mutex comparing, looking, drawing, designing;
+  RecordPictures pictures_of_records{folder};
   std::map<std::string, nlohmann::json> pictures;  ///< pictures of the gallery, by kind
-  std::atomic<bool> is_ending = false, has_ended = false;
+  std::atomic<bool> is_ending = false, has_ended = false, is_comparison_cancelled = false;
 
   using Handled = httplib::Server::HandlerResponse;
 
@@ -180,7 +182,9 @@ struct Server::Parts {
   void send_comparison(const Request& request, Response& response) {
     if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": expected compare");
     const std::lock_guard one_at_a_time(comparing);
-    const CancelledBy scope(&is_ending);
+    is_comparison_cancelled = false;
+    if (is_ending) throw Cancelled();
+    const CancelledBy scope(&is_comparison_cancelled);
     send_compared(compare(folder, request), command_line(request, {}), response);
   }
 
@@ -288,6 +292,10 @@ struct Server::Parts {
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
     });
+    post("/api/compare/cancel", [this](const Query&, Response& response, const std::string&) {
+      is_comparison_cancelled = true;
+      send(response, nlohmann::json::object());
+    });
     post("/api/like", [this](const Query&, Response& response, const std::string& body) {
       const Request request = parse_request(body);
       const std::lock_guard one_at_a_time(comparing);
@@ -313,7 +321,11 @@ struct Server::Parts {
       send(response, open_and_write(folder, parse_open(body)));
     });
     post("/api/cut", [this](const Query&, Response& response, const std::string& body) {
-      send(response, cut_out(folder, parse_cut(body)));
+      const CutRequest request = parse_cut(body);
+      send(response, request.keep ? pictures_of_records.keep(request) : cut_out(folder, request));
+    });
+    post("/api/record", [this](const Query&, Response& response, const std::string& body) {
+      response.set_content(pictures_of_records.answer(parse_picture(body)), "application/json");
     });
     post("/api/choice", [this](const Query&, Response& response, const std::string& body) {
       write_file_atomically(folder.own_file("choice.json"), parse_choice(body).dump(2) + "\n");
@@ -443,6 +455,7 @@ void Server::run() {
 
 void Server::stop() {
   parts_->is_ending = true;
+  parts_->is_comparison_cancelled = true;
   // The library's stop() has no effect before the server runs, so it is repeated.
   for (bool is_told = false; !parts_->has_ended; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
     if (is_told || !parts_->http.is_running()) continue;

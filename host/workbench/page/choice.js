@@ -140,6 +140,9 @@ function modelRow(name) {
 
 const kRoles = [["train", "train"], ["judge", "held back"], ["off", "leave out"]];
 
+/** @param {string} name */
+export const recordAddress = (name) => "#record/" + encodeURIComponent(name);
+
 function recordRow(name) {
   const select = el("select", {
     "aria-label": "Role of " + name,
@@ -148,7 +151,7 @@ function recordRow(name) {
       changed();
     },
   }, ...kRoles.map(([value, text]) => el("option", { value, selected: choice.roles[name] === value }, text)));
-  return el("li", { className: "role-" + choice.roles[name] }, el("span", { className: "name" }, name), select);
+  return el("li", { className: "role-" + choice.roles[name] }, el("a", { className: "name", href: recordAddress(name), title: "Show its channels" }, name), select);
 }
 
 function sheetRow(name) {

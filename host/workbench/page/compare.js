@@ -5,6 +5,7 @@ import { commandLine, el, errorBox, notice, percent, short } from "./elements.js
 import { post } from "./exchange.js";
 import { firstLook, mostProbable } from "./look.js";
 import { plots, save } from "./plot_files.js";
+import { showPicture } from "./record.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
 const kCoordinates = ["position", "speed", "acceleration", "current", "time", "travel_since_reversal", "rest"], kPlotCoordinates = ["position", "phase", ...kCoordinates.slice(1), "temperature"], kUsualMap = ["position", "speed"];
@@ -147,6 +148,33 @@ function likeTools(records) {
   };
 }
 
+/** Bytes of records whose comparison takes long enough that their channels are shown before it. */
+const kLong = 16e6;
+
+/** The longest of the records, if their comparison takes long. */
+function longestOf(records) {
+  const files = choice.files.filter((file) => records.includes(file.name)).sort((a, b) => b.bytes - a.bytes);
+  return files.reduce((sum, file) => sum + file.bytes, 0) > kLong ? files[0].name : null;
+}
+
+/** Shows what is told about a comparison, and the channels of the longest record below it.
+ * @param {Element} place
+ * @param {Element} head
+ * @param {Element} told
+ * @param {string} record
+ */
+function showLong(place, head, told, record) {
+  if (place.querySelector(".long")?.getAttribute("data-record") === record) return place.querySelector(".long").previousElementSibling.replaceWith(told);
+  const box = el("section", { className: "long", "data-record": record });
+  place.replaceChildren(head, told, box);
+  showPicture(box, record);
+}
+
+/** Drops the answer that a comparison still waits for, because another view is shown. */
+export function leaveCompare() {
+  asked++;
+}
+
 /** @param {Element} place */
 export async function showCompare(place) {
   const again = () => showCompare(place);
@@ -160,8 +188,15 @@ export async function showCompare(place) {
     place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A comparison needs a model: drop one (.toml), or identify one from training records and a data sheet on the left."));
     return;
   }
-  place.classList.add("waiting");
-  if (!place.querySelector(".blocks")) place.replaceChildren(head, el("p", { className: "soft" }, "Predicting…"));
+  const long = longestOf(records);
+  if (long) {
+    forgetPlots();
+    const cancel = () => post("/api/compare/cancel", {}).catch((error) => notice(error.message));
+    showLong(place, head, el("div", { className: "progress" }, el("span", {}, "Predicting " + records.length + (records.length > 1 ? " records" : " record") + ". This takes some seconds for each million rows."), el("progress", { "aria-label": "Predicting" }), el("button", { type: "button", id: "cancel-compare", onclick: cancel }, "Cancel")), long);
+  } else {
+    place.classList.add("waiting");
+    if (!place.querySelector(".blocks")) place.replaceChildren(head, el("p", { className: "soft" }, "Predicting…"));
+  }
   const body = el("div"), options = { focus, moreTools: likeTools(records) };
   try {
     const { told, show } = await showComparison(body, [choice.model, ...choice.beside], records, options);
@@ -179,8 +214,10 @@ export async function showCompare(place) {
     showFirstLook(head).catch((error) => notice(error.message));
   } catch (error) {
     if (mine !== asked) return;
+    const told = error.message === "cancelled" ? el("div", { className: "row head", role: "status" }, "The comparison was cancelled.", el("button", { type: "button", onclick: again }, "Compare")) : errorBox(error, (words) => (choice.accepted.push(...words), again()));
+    if (long) return showLong(place, head, told, long);
     forgetPlots();
-    place.replaceChildren(head, errorBox(error, (words) => (choice.accepted.push(...words), again())));
+    place.replaceChildren(head, told);
   } finally {
     if (mine === asked) place.classList.remove("waiting");
   }

@@ -5,12 +5,23 @@ import { stageParameters } from "./board_parameters.js";
 import { choice } from "./choice.js";
 import { commandLine, el, errorBox, notice, short } from "./elements.js";
 import { post } from "./exchange.js";
+import { repeatPanel } from "./repeat.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
 /** Values of the controls; they outlive the view. */
 const wish = { response: "model", fc: 30, zeta: 0.7, notch: false, notch_Hz: 100, notch_damping: 0.3, notch_depth: 0.1, low_pass: false, low_pass_Hz: 200 };
 let asked = 0;
 let timer = 0;
+/** Parameters of the design that is shown, as a file. */
+let designed = "";
+/** @type {(() => void)[]} */
+let leaving = [];
+
+/** Ends what the view does while it is shown. */
+export function leaveLoop() {
+  leaving.forEach((end) => end());
+  leaving = [];
+}
 
 function request(further = {}) {
   return {
@@ -53,6 +64,7 @@ export function showLoop(place) {
   }
 
   function draw(told) {
+    designed = told.parameters;
     const parts = partsOf(told.report), scrolled = window.scrollY;
     result.style.minHeight = result.offsetHeight + "px";
     forgetPlots(result);
@@ -94,7 +106,8 @@ export function showLoop(place) {
   }
 
   forgetPlots();
+  leaveLoop();
   drawControls();
-  place.replaceChildren(head, el("p", { className: "lead" }, "“Before” has the same bandwidth without filters. Nothing is written until you wish it."), controls, result);
+  place.replaceChildren(head, el("p", { className: "lead" }, "“Before” has the same bandwidth without filters. Nothing is written until you wish it."), controls, board.device ? repeatPanel(() => designed, leaving) : "", result);
   ask();
 }

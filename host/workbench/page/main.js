@@ -1,14 +1,15 @@
 // The page: selects the view by its address, handles keys, and redraws after changes.
 import { lookAtBoard, stream } from "./board.js";
 import { acceptDrops, loadFolder, onChoice } from "./choice.js";
-import { showCompare } from "./compare.js";
+import { leaveCompare, showCompare } from "./compare.js";
 import { stopButton } from "./command.js";
 import { el, errorBox } from "./elements.js";
 import { follow, keys, showEffects } from "./effects.js";
 import { showGallery } from "./gallery.js";
-import { showLoop } from "./loop.js";
+import { leaveLoop, showLoop } from "./loop.js";
 import { leaveLive, liveKey, showLive } from "./live.js";
 import { showOpening } from "./opening.js";
+import { showRecord } from "./record.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
 import { continueTheOne, stopsPlace, watchStops } from "./stops.js";
@@ -31,7 +32,7 @@ async function show() {
   const view = kViews.find((one) => one[0] === name) || kViews[0];
   links();
   try {
-    await (name === "open" ? showOpening(content, details) : view[2](content, details[0]));
+    await (name === "open" ? showOpening(content, details) : name === "record" ? showRecord(content, details.join("/")) : view[2](content, details[0]));
   } catch (error) {
     forgetPlots();
     content.replaceChildren(errorBox(error));
@@ -40,6 +41,9 @@ async function show() {
 
 function goTo() {
   leaveLive();
+  leaveCompare();
+  leaveLoop();
+  content.classList.remove("waiting");
   forgetPlots();
   content.replaceChildren();
   show();
@@ -60,7 +64,7 @@ async function start() {
   if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
   document.getElementById("view").replaceChildren(stopsPlace, progress, content);
   acceptDrops();
-  onChoice(() => !["jobs", "open", "live"].some(isShown) && show());
+  onChoice(() => !["jobs", "open", "live", "record"].some(isShown) && show());
   onJobs(async (ended) => {
     progress.replaceChildren(...progressBars());
     await follow(ended);

@@ -14,7 +14,7 @@ function niceStep(rough) {
 export class Scope {
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{names: string[], units: string[], period_s: number}} stream
+   * @param {{names: string[], units: string[], period_s: number, start_s?: number}} stream `start_s`: time of row 0
    */
   constructor(canvas, stream) {
     this.canvas = canvas;
@@ -24,6 +24,10 @@ export class Scope {
     /** @type {[number, number]|null} rows that are being selected */
     this.selection = null;
     this.isDue = false;
+    /** Number of rows, if it is known: the last bucket may have fewer than the others. */
+    this.end = Infinity;
+    /** Whether rows are missing only because they have not been read yet. */
+    this.isPartial = false;
     /** Rows that came, that are missing, and buckets that came twice. */
     this.counts = { taken: 0, missing: 0, twice: 0 };
     this.begin(1, 1);
@@ -119,7 +123,7 @@ export class Scope {
     context.fillStyle = colour("--shade");
     for (let number = first; number < last; number++) {
       const place = number % this.room;
-      const isLost = this.number[place] === number && this.taken[place] < this.rows;
+      const isLost = !this.isPartial && this.number[place] === number && this.taken[place] < Math.min(this.rows, this.end - number * this.rows);
       if (isLost) context.fillRect(x(number * this.rows), 0, Math.max(2, x((number + 1) * this.rows) - x(number * this.rows)), lanes * kLane);
     }
     if (this.selection) context.fillRect(x(Math.min(...this.selection)), 0, Math.abs(x(this.selection[1]) - x(this.selection[0])), lanes * kLane);
@@ -151,7 +155,7 @@ export class Scope {
       let isDown = false;
       for (let number = first; number < last; number++) {
         const place = number % this.room;
-        if (this.number[place] !== number || !this.taken[place]) {
+        if (this.number[place] !== number || !this.taken[place] || isNaN(low[place])) {
           isDown = false;
           continue;
         }
@@ -165,10 +169,11 @@ export class Scope {
 
     context.fillStyle = colour("--soft");
     context.textAlign = "center";
-    const period = this.stream.period_s, from_s = this.from * period, to_s = this.to * period;
+    const period = this.stream.period_s, start_s = this.stream.start_s || 0, from_s = start_s + this.from * period, to_s = start_s + this.to * period;
     const step = niceStep(Math.max(1e-6, to_s - from_s) / Math.max(2, (width - kLeft) / 110));
-    for (let k = Math.ceil(Math.max(0, from_s) / step); k * step <= to_s; k++)
-      context.fillText(short(k * step) + " s", Math.min(width - 24, Math.max(kLeft + 20, x((k * step) / period))), height - 8);
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    for (let k = Math.ceil(Math.max(start_s, from_s) / step); k * step <= to_s; k++)
+      context.fillText((k * step).toFixed(digits) + " s", Math.min(width - 24, Math.max(kLeft + 20, x((k * step - start_s) / period))), height - 8);
     for (const [name, row] of Object.entries(this.cursors)) {
       if (row === null || row < this.from || row > this.to) continue;
       context.fillStyle = colour(name === "a" ? "--attention" : "--residual");

@@ -338,6 +338,55 @@ class Workbench(ServedPage, unittest.TestCase):
         WebDriverWait(browser, PATIENCE_S).until(lambda _: (self.folder / "model-params.toml").exists())
         self.quiet()
 
+    def test_a_long_record_is_zoomed_to_its_spike(self) -> None:
+        browser, rows, spike = self.browser, 300_000, 187_654
+        self.until("#content .verdict")
+        with open(self.folder / "long.csv", "w") as file:
+            file.write("# format: axis-record/1\nt_s,u_V,x_mm,w_rad_s\n")
+            file.writelines(f"{k / 1000:.3f},{9.5 if k == spike else k % 100 / 100},{k % 5000 / 100},{k % 77 / 10}\n" for k in range(rows))
+        (self.folder / "workbench").mkdir(exist_ok=True)
+        (self.folder / "workbench/choice.json").write_text(json.dumps({"model": "model.toml", "beside": [], "roles": {"long.csv": "off"}}))
+        browser.refresh()
+        self.click("#choice a[href='#record/long.csv']")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: f"{rows:,} rows" in " ".join(self.texts("#record-status")) and "read" not in " ".join(self.texts("#record-status")))
+        canvas = self.until("canvas.scope")
+
+        def shown() -> dict:
+            return browser.execute_script("const z = arguments[0].zoom; return { from: z.from, to: z.to, rows: z.shown.rows, first: z.shown.first, low: z.shown.low[0], high: (z.shown.high || z.shown.low)[0], isFine: z.isFine() }", canvas)
+
+        def highest(view: dict) -> int:
+            return view["first"] + view["rows"] * max(range(len(view["high"])), key=lambda k: view["high"][k])
+
+        whole = shown()
+        self.assertGreater(whole["rows"], 64, "buckets, not rows")
+        self.assertEqual(max(whole["high"]), 9.5, "one row of 300 000 is in the picture")
+        self.assertLessEqual(highest(whole), spike)
+        self.assertGreater(highest(whole) + whole["rows"], spike)
+        self.keep("record")
+        # Drag over the spike, where the picture has it; then closer by the wheel's way, until rows are shown.
+        box = browser.execute_script("const b = arguments[0].getBoundingClientRect(); return [b.left, b.width]", canvas)
+        left, width = 74, box[1]
+        place = left + (width - left) * spike / rows - width / 2
+        ActionChains(browser).move_to_element_with_offset(canvas, int(place) - 30, 0).click_and_hold().move_by_offset(30, 0).move_by_offset(30, 0).release().perform()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: shown()["isFine"] and shown()["to"] - shown()["from"] < 0.1 * rows)
+        self.assertTrue(shown()["from"] < spike < shown()["to"])
+        browser.execute_script("arguments[0].zoom.look(arguments[1] - 100, arguments[1] + 100)", canvas, spike)
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: shown()["isFine"])
+        self.assertEqual(shown()["rows"], 1)
+        self.assertEqual(highest(shown()), spike)
+        ActionChains(browser).move_to_element_with_offset(canvas, int(left + (width - left) / 2 - width / 2), 0).perform()
+        self.assertRegex(" ".join(self.texts("#record-reading")), r"187\.6[45]\d s: u_V")
+        self.keep("record-zoomed")
+
+        browser.execute_script("arguments[0].zoom.look(100_000, 140_000)", canvas)
+        self.click("#keep-shown")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: (self.folder / "long-100-140s.csv").exists())
+        self.assertIn("axistool cut long.csv --from 100 --to 140", " ".join(self.texts(".command code")))
+        kept = (self.folder / "long-100-140s.csv").read_text().splitlines()
+        self.assertTrue(kept[-1].startswith("140"), kept[-1])
+        self.keep_on_phone("phone-record")
+        self.quiet()
+
     def test_file_names_are_text(self) -> None:
         name = "<img src=x onerror=alert(1)>.csv"
         self.until("#content .verdict")  # the first page has no request in progress that would lack its cookie

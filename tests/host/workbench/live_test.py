@@ -8,6 +8,7 @@ the server may take (0.5; it depends on the computer's load)."""
 import functools
 import json
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -20,7 +21,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
-from simulated_board import SimulatedBoard
+from simulated_board import MODEL, SimulatedBoard
 
 RECEIVED = "import('/page/live.js').then((live) => arguments[0](live.received()))"
 # Presses those buttons of a list that are shown and enabled.
@@ -235,6 +236,58 @@ class Live(ServedPage, SimulatedBoard):
         self.click("#move-x:enabled")
         self.soon(lambda: any("monitor.travel_min" in text for text in self.texts("#notice")), "not so far without travel limits")
         self.assertAlmostEqual(self.stands(), 12.5, delta=0.01)
+
+    @on_a_free_computer
+    def test_the_same_motion_before_and_after_a_design(self) -> None:
+        browser = self.browser
+        shutil.copy(MODEL, self.folder)
+        self.take_and_enable()
+        browser.execute_script("[...document.querySelectorAll('.axis button')].find((one) => one.textContent === 'Home is here').click()")
+        self.soon(lambda: self.axis()["homed"], "home is known")
+        browser.get(self.url.split("?")[0] + "#loop")  # a new page, without the command
+        browser.refresh()
+        self.until("#content .loop ~ div .blocks canvas")
+        self.soon(lambda: "command" in self.texts("#repeat-state")[0], "motion needs the command")
+
+        def press(button: str) -> None:
+            """As take_and_enable(): a page without processor time takes the command again."""
+
+            def pressed() -> bool:
+                browser.execute_script(PRESS, ["repeat-claim"])
+                if not browser.find_elements(By.CSS_SELECTOR, f"#{button}:enabled"):
+                    return False
+                browser.execute_script(PRESS, [button])
+                return True
+
+            self.soon(pressed, button)
+
+        way = self.until("[aria-label='Way of the motion']")
+        way.clear()
+        way.send_keys("15" + Keys.TAB)
+        browser.execute_script(PRESS, ["repeat-claim"])
+        self.soon(lambda: any("way is free" in text for text in self.texts("#repeat-state")), "consent is asked for")
+        self.assertFalse(browser.find_element(By.ID, "move-before").is_enabled(), "no motion without consent")
+        self.click("#way-is-free")
+
+        def gain() -> float:
+            return json.loads(self.tool("get-params", "x.feedback.k1", "--sim", "--json", "-"))["parameters"]["x.feedback.k1"]
+
+        began, gain_before = self.at_mm(), gain()
+        press("move-before")
+        self.until("#repeat-errors tbody tr", 60)
+        self.assertAlmostEqual(self.stands(), began, delta=0.01)
+        browser.execute_script("const s = document.querySelector('.loop [data-name=fc]'); s.value = 60; s.dispatchEvent(new Event('input'));")
+        self.soon(lambda: "--fc 60 " in " ".join(self.texts("#content .command code")), "the design is faster")
+        press("move-after")
+        self.until("#repeat-errors tbody tr + tr", 60)
+        before, after = (list(map(float, text.split()[1:])) for text in self.texts("#repeat-errors tbody tr"))
+        print(f"following error, RMS and largest: {before} um before, {after} um after", file=sys.stderr)
+        self.assertLess(after[0], before[0], "the faster loop follows better on the machine as well")
+        self.assertGreater(before[1], before[0])
+        self.assertAlmostEqual(self.stands(), began, delta=0.01)
+        self.assertNotEqual(gain(), gain_before, "the design is in the board")
+        self.keep("repeat")
+        self.quiet()
 
     @on_a_free_computer
     def test_an_axis_stops_when_its_page_is_killed(self) -> None:

@@ -12,6 +12,9 @@
 #include "host/workbench/server.hpp"
 #include "tests/host/temporary_folder.hpp"
 
+// A macro of <resolv.h>, which httplib.h includes. Eigen uses that name.
+#undef _res
+
 /// During its lifetime the working directory is a new folder.
 class WorkingFolder {
  public:
