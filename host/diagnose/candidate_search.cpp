@@ -56,7 +56,7 @@ constexpr double kOpenRace = 1.25;
 /// Budget for each start near a finalist: enough to find the deepest local minimum.
 constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
 constexpr std::size_t kBestOfTryout = 4;
-constexpr int kFirstSteps = 3;  // of each start, before the better ones are fitted further
+constexpr int kFirstSteps = 2;  // of each start, before the better ones are fitted further
 /// If the base itself needs many small steps, so does every candidate. Each candidate then gets this share of its
 /// budget.
 constexpr double kCostlyPart = 0.4;
@@ -182,18 +182,25 @@ class KindSearch {
         medium_error_(fit_model(model, medium_, budgeted(kSeriousFit)).robust) {}
 
   std::vector<Candidate> run(const std::vector<const sim::EffectInfo*>& infos, const ShareDone& progress) {
+    look_at_probable(infos);
+    std::vector<const sim::EffectInfo*> others = infos;
+    drop_what_is_told_apart(others);
     // Effects that need many small steps, although the base does not, follow when the others have been fitted.
-    std::vector<std::vector<Start>> first, later;
-    for (std::vector<Start>& starts : starts_of(infos))
-      (is_costly_ || !needs_own_floors(starts.front().model) ? first : later).push_back(std::move(starts));
-    look_at(first, part_of(progress, 0.0, 0.4));
-    // If an effect explains the records, only those remain of interest that may be confused with it.
-    if (!race_.empty() && explains(race_.front()))
-      std::erase_if(later, [&](const std::vector<Start>& starts) {
-        const sim::EffectInfo &one = *race_.front().info, &other = *starts.front().info;
-        return !is_confused_with(one, other) && !is_confused_with(other, one);
-      });
-    look_at(later, part_of(progress, 0.4, 0.7));
+    std::vector<const sim::EffectInfo*> later;
+    std::vector<std::vector<Start>> now, then;
+    for (std::vector<Start>& starts : starts_of(others)) {
+      const bool waits = !is_costly_ && needs_own_floors(starts.front().model);
+      if (waits) later.push_back(starts.front().info);
+      (waits ? then : now).push_back(std::move(starts));
+    }
+    look_at(now, part_of(progress, 0.0, 0.4));
+    drop_what_is_told_apart(later);
+    const bool has_load = effort_.balance == nullptr || allows_second_mass(*effort_.balance, kinds_);
+    std::erase_if(then, [&](const std::vector<Start>& starts) {
+      return std::ranges::find(later, starts.front().info) == later.end() ||
+             (!has_load && sim::Drive(starts.front().model).has_second_mass());
+    });
+    look_at(then, part_of(progress, 0.4, 0.7));
     std::vector<Candidate> candidates = candidates_of(finalists());
     if (progress) progress(1.0);
     return candidates;
@@ -203,6 +210,31 @@ class KindSearch {
   FitOptions budgeted(FitOptions options) const {
     if (is_costly_) options.most_steps *= kCostlyPart;
     return options;
+  }
+
+  /// Fits those effects of which the force balance holds one to be present, from where it has fitted them.
+  void look_at_probable(const std::vector<const sim::EffectInfo*>& infos) {
+    if (effort_.balance == nullptr) return;
+    const std::vector<std::string> probable = probable_kinds(*effort_.balance, kinds_);
+    std::vector<Start> starts;
+    for (const sim::EffectInfo* info : infos) {
+      if (std::ranges::find(probable, info->kind) == probable.end()) continue;
+      if (std::optional<sim::DriveDescription> start = balanced_start(*effort_.balance, kinds_, *info))
+        starts.push_back({.info = info, .model = *std::move(start), .balanced = true});
+    }
+    fit_all(starts, medium_, budgeted(kSeriousFit), medium_error_, {});
+    std::ranges::move(starts, std::back_inserter(race_));
+  }
+
+  /// If an effect explains the records, only those remain of interest that may be confused with it and that the force
+  /// balance does not tell from it.
+  void drop_what_is_told_apart(std::vector<const sim::EffectInfo*>& infos) const {
+    if (race_.empty() || !explains(race_.front())) return;
+    const sim::EffectInfo& leader = *race_.front().info;
+    std::erase_if(infos, [&](const sim::EffectInfo* other) {
+      return other == &leader || (!is_confused_with(leader, *other) && !is_confused_with(*other, leader)) ||
+             (effort_.balance != nullptr && are_told_apart(*effort_.balance, kinds_, leader.kind, other->kind));
+    });
   }
 
   /// The starts of each effect; effects without a start are left out.
@@ -237,13 +269,10 @@ class KindSearch {
 
   /// Takes a first look at each start of these effects, and fits the most promising ones.
   void look_at(const std::vector<std::vector<Start>>& effects, const ShareDone& progress) {
-    std::vector<std::vector<Start>> chosen(effects.size());
-    for_each_in_parallel(effects.size(), [&](std::size_t k) { chosen[k] = scanned(effects[k], model_, medium_); });
-    std::vector<Start> starts;
-    for (std::size_t k = 0; k < effects.size(); ++k) {
-      std::ranges::move(chosen[k], std::back_inserter(starts));
+    std::vector<Start> starts = chosen_starts(effects, model_, medium_);
+    for (const std::vector<Start>& of_one : effects) {
       // Periods come from a spectrum over those that repeat within the travel, second masses from a scan.
-      const sim::EffectInfo& info = *effects[k].front().info;
+      const sim::EffectInfo& info = *of_one.front().info;
       if (effort_.balance == nullptr || info.periodic) continue;
       if (std::optional<sim::DriveDescription> start = balanced_start(*effort_.balance, kinds_, info);
           start && !needs_own_floors(*start))
@@ -255,7 +284,16 @@ class KindSearch {
     });
     std::ranges::stable_sort(starts, {}, &Start::error);
     keep_best(starts);
+    // Successive halving (Jamieson and Talwalkar 2016): all starts get a few steps, the best of them more.
+    FitOptions few_steps = budgeted(kFirstLook);
+    few_steps.most_iterations = kFirstSteps;
+    fit_all(starts, coarse_, few_steps, coarse_error_, progress);
+    std::vector<Start> others(std::next(starts.begin(), std::ptrdiff_t(std::min(2 * effort_.finalists, starts.size()))),
+                              starts.end());
+    starts.resize(starts.size() - others.size(), starts.front());
     fit_all(starts, coarse_, budgeted(kFirstLook), coarse_error_, progress);
+    std::ranges::move(others, std::back_inserter(starts));
+    std::ranges::stable_sort(starts, {}, &Start::error);
     std::vector<Start> entrants = promising(starts);
     fit_all(entrants, medium_, budgeted(kSeriousFit), medium_error_, {});
     std::ranges::move(starts, std::back_inserter(starts_));
@@ -292,8 +330,10 @@ class KindSearch {
       if (is_new(start)) list.push_back(start);
     if (list.empty()) return list;
     Start& leader = list.front();
-    leader.model =
-        shaken(leader, effort_.nominal, suited_to(leader.model, affordable(medium_, leader.model, kSeriousFit)));
+    // A fit that leaves no more than the noise floor has found no poor local minimum.
+    if (error_over_own_floors(leader.model, medium_).combined > 1.0)
+      leader.model =
+          shaken(leader, effort_.nominal, suited_to(leader.model, affordable(medium_, leader.model, kSeriousFit)));
     // Such an effect may have a larger error only because the base was biased.
     const sim::EffectInfo& first = *leader.info;
     for (const Start& start : starts_)

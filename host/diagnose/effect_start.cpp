@@ -1,11 +1,15 @@
 #include "host/diagnose/effect_start.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
 #include "host/diagnose/fit_budget.hpp"
 #include "host/diagnose/pattern_search.hpp"
+#include "host/infer/posterior.hpp"
+#include "host/parallel.hpp"
 
 namespace host {
 
@@ -51,28 +55,10 @@ double left_at(const sim::DriveDescription& start, const sim::DriveDescription& 
   return error_of(sim::Drive(start), own).robust / error_of(sim::Drive(base), own).robust;
 }
 
-void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set) {
-  for (Start& start : starts) {
-    start.error = left_at(start.model, base, set);
-    start.scanned = true;
-  }
-  std::ranges::stable_sort(starts, {}, &Start::error);
-  starts.resize(kBestOfScan, starts.front());
-  std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
-  for (Start& start : starts) {
-    start.model = pattern_search(start.model, suited_to(start.model, affordable(set, start.model, kSeriousFit)),
-                                 kSeriousFit.most_steps);
-    start.error = left_at(start.model, base, set);
-  }
-}
-
-}  // namespace
-
-std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set) {
-  const sim::EffectInfo& info = *starts.front().info;
-  const bool is_scanned = !info.periodic && starts.size() > kMostStarts;
+/// The starts of an effect for each way to share friction between motor and load.
+std::vector<std::vector<Start>> ways_of(const std::vector<Start>& starts) {
   std::vector<std::vector<Start>> ways{starts};
-  if (const sim::ParameterInfo* friction = info.parameter("load_friction"))
+  if (const sim::ParameterInfo* friction = starts.front().info->parameter("load_friction"))
     for (const double part : friction->starts) {
       ways.push_back(starts);
       for (Start& shared : ways.back()) {
@@ -80,11 +66,50 @@ std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDes
         shared.effect = shared.model.effects.back();
       }
     }
-  std::vector<Start> chosen;
-  for (std::vector<Start>& way : ways) {
-    if (is_scanned) scan(way, base, set);
-    std::ranges::move(way, std::back_inserter(chosen));
+  return ways;
+}
+
+/// Evaluates the starts of each list, and fits the best of each by a search without gradients.
+void scan(std::vector<std::vector<Start>>& lists, const sim::DriveDescription& base, const RecordSet& set) {
+  const auto for_all = [&lists](const auto& work) {
+    std::vector<Start*> all;
+    for (std::vector<Start>& list : lists)
+      for (Start& start : list) all.push_back(&start);
+    for_each_in_parallel(all.size(), [&](std::size_t k) { work(*all[k]); });
+  };
+  for_all([&](Start& start) {
+    start.error = left_at(start.model, base, set);
+    start.scanned = true;
+  });
+  for (std::vector<Start>& starts : lists) {
+    std::ranges::stable_sort(starts, {}, &Start::error);
+    starts.resize(kBestOfScan, starts.front());
+    std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
   }
+  for_all([&](Start& start) {
+    start.model = pattern_search(start.model, suited_to(start.model, affordable(set, start.model, kSeriousFit)),
+                                 kSeriousFit.most_steps);
+    start.error = left_at(start.model, base, set);
+  });
+}
+
+}  // namespace
+
+std::vector<Start> chosen_starts(const std::vector<std::vector<Start>>& effects, const sim::DriveDescription& base,
+                                 const RecordSet& set) {
+  std::vector<Start> chosen;
+  std::vector<std::vector<Start>> to_scan;
+  for (const std::vector<Start>& starts : effects) {
+    const bool is_scanned = !starts.front().info->periodic && starts.size() > kMostStarts;
+    for (std::vector<Start>& way : ways_of(starts)) {
+      if (is_scanned)
+        to_scan.push_back(std::move(way));
+      else
+        std::ranges::move(way, std::back_inserter(chosen));
+    }
+  }
+  scan(to_scan, base, set);
+  for (std::vector<Start>& way : to_scan) std::ranges::move(way, std::back_inserter(chosen));
   return chosen;
 }
 
@@ -111,6 +136,54 @@ void keep_best(std::vector<Start>& starts) {
     if (start.balanced || ahead < kBest || ahead_by_this_way == 0) kept.push_back(std::move(start));
   }
   starts = std::move(kept);
+}
+
+namespace {
+
+/// The models of the balance with one effect added to `kinds`; none if it did not choose these.
+std::vector<const ScreenedModel*> tried_beside(const EffortScreen& balance, const std::vector<std::string>& kinds) {
+  std::vector<const ScreenedModel*> tried;
+  for (const std::vector<ScreenedModel>& step : balance.steps) {
+    for (const ScreenedModel& one : step)
+      if (one.kinds.size() == kinds.size() + 1 && std::is_permutation(kinds.begin(), kinds.end(), one.kinds.begin()))
+        tried.push_back(&one);
+    if (!tried.empty()) break;
+  }
+  return tried;
+}
+
+}  // namespace
+
+std::vector<std::string> probable_kinds(const EffortScreen& balance, const std::vector<std::string>& kinds) {
+  std::vector<const ScreenedModel*> tried = tried_beside(balance, kinds);
+  std::ranges::stable_sort(tried, std::greater(), &ScreenedModel::probability);
+  std::vector<std::string> probable;
+  double together = 0.0;
+  for (const ScreenedModel* one : tried) {
+    if (together >= kClaimed) break;
+    together += one->probability;
+    probable.push_back(one->kinds.back());
+  }
+  if (together < kClaimed) probable.clear();
+  return probable;
+}
+
+bool are_told_apart(const EffortScreen& balance, const std::vector<std::string>& kinds, std::string_view leader,
+                    std::string_view other) {
+  const ScreenedModel *ahead = nullptr, *behind = nullptr;
+  for (const ScreenedModel* one : tried_beside(balance, kinds)) {
+    if (one->kinds.back() == leader) ahead = one;
+    if (one->kinds.back() == other) behind = one;
+  }
+  return ahead != nullptr && behind != nullptr && behind->log_odds < ahead->log_odds + std::log(kPossible);
+}
+
+bool allows_second_mass(const EffortScreen& balance, const std::vector<std::string>& kinds) {
+  if (balance.steps.empty() || balance.rows.steady) return true;
+  std::vector<const ScreenedModel*> tried = tried_beside(balance, kinds);
+  if (tried.empty()) tried = tried_beside(balance, {});
+  return std::ranges::any_of(
+      tried, [](const ScreenedModel* one) { return one->log_odds > 0.0 && sim::Drive(one->model).has_second_mass(); });
 }
 
 std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,

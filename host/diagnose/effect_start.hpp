@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/diagnose/model_fit.hpp"
@@ -41,9 +42,11 @@ RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared)
 void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
                const FitOptions& options);
 
-/// The starts from which an effect is fitted: those with many parameters are scanned and only the best remain, perhaps
-/// none. Each way to share friction between motor and load is scanned separately, so that each is fitted.
-std::vector<Start> scanned(const std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set);
+/// The starts from which effects are fitted: those of an effect with many parameters are scanned and only the best
+/// remain, perhaps none. Each way to share friction between motor and load is scanned separately, so that each is
+/// fitted. `effects`: the starts of each.
+std::vector<Start> chosen_starts(const std::vector<std::vector<Start>>& effects, const sim::DriveDescription& base,
+                                 const RecordSet& set);
 
 /// Fits the parameters of the effect alone, with at most the windows that `budget` allows, and stores the error
 /// relative to the base. A model that contains the base cannot be worse than the base, but a fit of all parameters may
@@ -53,6 +56,18 @@ void fit_own_size(Start& start, const sim::DriveDescription& base, const RecordS
 /// Keeps the two best starts of each effect, and the best one of each way to share friction between motor and load.
 /// Starts of the force balance do not count. `starts`: in the order of their errors.
 void keep_best(std::vector<Start>& starts);
+
+/// The kinds of which the force balance holds one to be present beside `kinds` with a probability of at least kClaimed,
+/// most probable first. Empty if it did not try any, or if no such group exists.
+std::vector<std::string> probable_kinds(const EffortScreen& balance, const std::vector<std::string>& kinds);
+
+/// Whether the balance tried both effects beside `kinds` and holds `other` to be impossible beside the leader.
+bool are_told_apart(const EffortScreen& balance, const std::vector<std::string>& kinds, std::string_view leader,
+                    std::string_view other);
+
+/// Whether the force balance found a second mass more probable than no further effect beside `kinds` (or, if it did not
+/// try these, beside the base). True if it cannot show a second mass, because the speed hardly changes.
+bool allows_second_mass(const EffortScreen& balance, const std::vector<std::string>& kinds);
 
 /// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
 /// has not taken over the part of the effect, as one may that was fitted to the motion without it.

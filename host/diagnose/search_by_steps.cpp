@@ -11,6 +11,7 @@
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/second_mass_terms.hpp"
+#include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/second_mass.hpp"
 
@@ -103,15 +104,19 @@ bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
 /// Refits several effects without each of them in turn. The last one may have made an earlier one unnecessary, or may
 /// only have moved the fit out of a local minimum.
 std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
-  std::vector<Candidate> found;
   const Errors with(whole.model, sets);
-  for (const std::string& kind : whole.kinds) {
+  std::vector<std::optional<Candidate>> shorter(whole.kinds.size());
+  for_each_in_parallel(shorter.size(), [&](std::size_t k) {
+    const std::string& kind = whole.kinds[k];
     const sim::DriveDescription model = without_or_handed(whole, kind, sets);
-    if (!is_as_good(model, with, sets)) continue;
+    if (!is_as_good(model, with, sets)) return;
     std::vector<std::string> kinds = whole.kinds;
     std::erase(kinds, kind);
-    found.push_back(judged(kinds, model, sets.training, sets.validation));
-  }
+    shorter[k] = judged(kinds, model, sets.training, sets.validation);
+  });
+  std::vector<Candidate> found;
+  for (std::optional<Candidate>& one : shorter)
+    if (one) found.push_back(*std::move(one));
   return found;
 }
 
@@ -119,7 +124,11 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
 /// helps alone. The last effect was searched only beside the earlier ones.
 std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vector<Candidate>& singles,
                                           const PreparedSets& sets) {
-  std::vector<Candidate> found;
+  struct Exchange {
+    std::vector<std::string> kinds;
+    sim::DriveDescription alone, exchanged;  // on the base of the other effect alone, and on the base of the whole
+  };
+  std::vector<Exchange> exchanges;
   for (const std::string& kind : std::span(whole.kinds).first(whole.kinds.size() - 1)) {
     const std::vector<std::string_view>& relatives = sim::find_effect(kind)->confused_with;
     for (const Candidate& single : singles) {
@@ -127,22 +136,25 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
       if (std::ranges::find(whole.kinds, other) != whole.kinds.end() || !is_physical(single, sets) ||
           std::ranges::find(relatives, other) == relatives.end())
         continue;
-      std::vector<std::string> kinds = {other};
-      // On the base of the other effect alone, and on the base of the whole.
-      sim::DriveDescription alone = single.model, exchanged = whole.model;
-      std::erase_if(exchanged.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
-      exchanged.effects.push_back(*single.model.find(other));
+      Exchange exchange{{other}, single.model, whole.model};
+      std::erase_if(exchange.exchanged.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
+      exchange.exchanged.effects.push_back(*single.model.find(other));
       for (const std::string& kept : whole.kinds) {
         if (kept == kind) continue;
-        alone.effects.push_back(*whole.model.find(kept));
-        kinds.push_back(kept);
+        exchange.alone.effects.push_back(*whole.model.find(kept));
+        exchange.kinds.push_back(kept);
       }
-      const FitResult one = fit_model(alone, sets.training, kRefit);
-      // The new effect still has the value that it had alone.
-      const FitResult two = fit_model(fit_model(exchanged, sets.training, kOwnSize).model, sets.training, kRefit);
-      found.push_back(judged(kinds, (one.robust < two.robust ? one : two).model, sets.training, sets.validation));
+      exchanges.push_back(std::move(exchange));
     }
   }
+  std::vector<Candidate> found(exchanges.size());
+  for_each_in_parallel(exchanges.size(), [&](std::size_t k) {
+    const auto& [kinds, alone, exchanged] = exchanges[k];
+    const FitResult one = fit_model(alone, sets.training, kRefit);
+    // The new effect still has the value that it had alone.
+    const FitResult two = fit_model(fit_model(exchanged, sets.training, kOwnSize).model, sets.training, kRefit);
+    found[k] = judged(kinds, (one.robust < two.robust ? one : two).model, sets.training, sets.validation);
+  });
   return found;
 }
 

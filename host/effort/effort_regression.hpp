@@ -19,6 +19,7 @@ struct ScreenedModel {
   /// RMS residual over RMS torque or force of the rows; 1 if the model explains nothing.
   double train = 1.0, validate = 1.0;
   double probability = 0.0;  ///< of the last kind or its group, compared with all candidates and "nothing"
+  double log_odds = 0.0;     ///< of the last kind over no further effect, nats
   double confidence = 0.0;   ///< that the last kind is better than no further effect
   std::size_t factors = 0;
   Eigen::VectorXd residual;  ///< of every row, Nm or N

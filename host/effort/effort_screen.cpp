@@ -18,6 +18,12 @@ namespace host {
 namespace {
 
 constexpr int kMostRounds = 16;  // includes further waves of a kind; limits the time
+
+void note_odds(ScreenedModel& model, double log_odds) {
+  model.log_odds = log_odds;
+  model.confidence = logistic(log_odds);
+}
+
 bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
   return std::ranges::find(kinds, kind) != kinds.end();
 }
@@ -66,7 +72,6 @@ class Search {
   /// The best model with each kind added, for the report and for `add`.
   std::vector<ScreenedModel> all_of(NextEffects& next) const {
     // Forms are refined only for kinds that may be named.
-    constexpr double kPossible = 1e-4;
     std::vector<ScreenedModel> list;
     for (NextEffect& effect : next.effects) {
       ScreenedModel tried;
@@ -74,7 +79,7 @@ class Search {
       if (!(closest ? with_closest(effect, tried) : with(effect.term, tried))) continue;
       if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further wave of a known effect
       tried.probability = effect.probability;
-      tried.confidence = logistic(effect.log_odds);
+      note_odds(tried, effect.log_odds);
       list.push_back(std::move(tried));
     }
     return list;
@@ -190,7 +195,7 @@ class Search {
     const std::string narrow = spring.term.kind;
     give_place(next, wide, std::move(spring));
     fitted.probability = effect_of(next, narrow).probability;
-    fitted.confidence = logistic(effect_of(next, narrow).log_odds);
+    note_odds(fitted, effect_of(next, narrow).log_odds);
     std::erase_if(list, [&](const auto& one) { return one.kinds.back() == wide || one.kinds.back() == narrow; });
     list.push_back(std::move(fitted));
   }
@@ -236,7 +241,7 @@ class Search {
         continue;
       }
       taken.probability = effect.probability;
-      taken.confidence = logistic(effect.log_odds);
+      note_odds(taken, effect.log_odds);
       if (effect.term.can_repeat) taken.words = words_of_waves(taken.model, kind);
       if (is_there(kind))
         take_further_wave(kind, std::move(taken));
@@ -351,7 +356,7 @@ class Search {
     ScreenedModel taken;
     if (!with(first.term, taken)) return false;
     taken.probability = first.certain.probability;
-    taken.confidence = logistic(first.log_odds);
+    note_odds(taken, first.log_odds);
     take_effect(first.certain.group, first.certain.probability, std::move(taken), list, all);
     keep(std::move(first.term), first.certain.group);
     to_be_followed_ = first.certain.group.front();
@@ -375,7 +380,7 @@ class Search {
     ScreenedModel taken;
     if (group.empty() || next.effects.front().term.can_repeat || !with(next.effects.front().term, taken)) return false;
     taken.probability = next.effects.front().probability;
-    taken.confidence = logistic(next.effects.front().log_odds);
+    note_odds(taken, next.effects.front().log_odds);
     take_effect(group, probability, std::move(taken), list, next);
     keep(next.effects.front().term, group);
     to_be_followed_ = group.front();

@@ -11,6 +11,9 @@ namespace host {
 /// Least probability that all named effects are present. A wrong name sends a mechanic to the wrong part, which costs
 /// some twenty times as much as another record.
 inline constexpr double kClaimed = 0.95;
+/// Probability below which an effect is not looked at as a rival: even if it were 500 times more probable, it would not
+/// reach the 5 % that a claim leaves to others.
+inline constexpr double kPossible = 1e-4;
 /// Largest group of rivals: one further measurement can separate this many.
 inline constexpr std::size_t kLargestGroup = 4;
 /// Least part of the remaining squared error on held-back records that the first named effect must explain. With less,
