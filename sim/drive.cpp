@@ -73,7 +73,7 @@ double Drive::memory_s() const {
 DriveState Drive::at(double x, double w) const {
   DriveState state;
   state.x = state.load_x = state.turned_x = x;
-  state.w = state.load_w = state.tach = w;
+  state.w = state.load_w = state.tach = state.seen_w = w;
   state.friction_speed = std::abs(w);
   return state;
 }
@@ -292,7 +292,9 @@ void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double
 
 double Drive::follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const {
   if (second_mass) {
+    const DriveMotion before = static_cast<const DriveMotion&>(state);
     observe(state, u_V, x1, t_s, duration_s);
+    if (dwell_gain > 0.0) follow_rest_of_two(state, before, u_V, w1, t_s, duration_s);
     return 0.0;
   }
   const double w0 = state.w;
@@ -312,6 +314,22 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
   state.w = w1;
   filter_tach(state, w0, duration_s);
   return effort;
+}
+
+void Drive::follow_rest_of_two(DriveState& state, const DriveMotion& before, double u_V, double w1, double t_s,
+                               double duration_s) const {
+  // The measured motion tells rests from slow motion, because observed masses never stand still. On average over some
+  // samples, the load moves as the motor does.
+  state.rest_s = before.rest_s;
+  state.slide_s = before.slide_s;
+  state.restuck = before.restuck;
+  state.breakaway_gain = before.breakaway_gain;
+  const double w0 = before.seen_w, motor = command_effort(u_V, w0) * product(effort_factor, state.x);
+  const RichContact contact(*this, state, t_s, state.x, motor);
+  const double contact_effort = with_loads(motor, 0.5 * (w0 + w1), t_s, state.x) - inertia * (w1 - w0) / duration_s;
+  follow_rest(state, w0, w1, contact_effort, duration_s, contact);
+  if (w1 == 0.0) state.w = 0.0;
+  state.seen_w = w1;
 }
 
 double Drive::rest_to_hold(DriveState state, double effort, double t_s) const {

@@ -62,6 +62,7 @@ struct DriveMotion {
   double restuck = 0.0;         ///< evidence that an undetected stop has reset breakaway_gain, -1..1
   double slide_s = 0.0;         ///< time since the last rest, while following a known motion
   double breakaway_gain = 0.0;  ///< relative increase of static friction by the last rest
+  double seen_w = 0.0;          ///< measured speed at the last sample, while following a known motion
   double effort = 0.0;          ///< output of the current loop, Nm or N
   double tach = 0.0;            ///< state of the tachometer's filter
   double turned_x = 0.0;        ///< travel at the last reversal, mm or m
@@ -214,6 +215,10 @@ class Drive {
   template <Mechanics kMechanics, typename Contact>
   double limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const;
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
+  /// Rest and breakaway of two masses along the measured motion. `before`: state before observe(); `w1`: measured
+  /// speed, exactly 0 at rest.
+  void follow_rest_of_two(DriveState& state, const DriveMotion& before, double u_V, double w1, double t_s,
+                          double duration_s) const;
   void follow_rest(DriveMotion& motion, double w0, double w1, double contact_effort, double duration_s,
                    const RichContact& contact) const;
   void filter_tach(DriveMotion& motion, double w_before, double duration_s) const;

@@ -15,11 +15,13 @@ inline double two_mass_step_s(const SecondMass& mass) {
   return 0.27 / (2.0 * std::numbers::pi * std::max(mass.resonance_Hz, 1.0));
 }
 
-/// A part of a contact's dry friction, and a part of its viscous friction.
+/// A part of a contact's dry friction, and a part of its viscous friction. Of the two parts, the one with more of the
+/// dry friction tells the contact of its stops and starts: a mass without friction only swings.
 template <typename Contact>
 struct PartOfContact {
   Contact& whole;
   double dry, viscous;
+  bool tells;
 
   FrictionPoint sliding(int side, double speed) const {
     if (dry == viscous) {
@@ -30,9 +32,15 @@ struct PartOfContact {
     return never_driving({dry * rubbing.effort + viscous * fluid.effort, dry * rubbing.slope + viscous * fluid.slope});
   }
   double breakaway(int side) const { return dry * whole.breakaway(side); }
-  void broke_away() const { whole.broke_away(); }
-  void came_to_rest() const { whole.came_to_rest(); }
-  void rested(double duration_s) const { whole.rested(duration_s); }
+  void broke_away() const {
+    if (tells) whole.broke_away();
+  }
+  void came_to_rest() const {
+    if (tells) whole.came_to_rest();
+  }
+  void rested(double duration_s) const {
+    if (tells) whole.rested(duration_s);
+  }
 };
 
 /// A mass without friction.
@@ -100,9 +108,12 @@ template <typename Contact>
                                                   double effort, double duration_s, int parts, Contact& contact) {
   using Part = PartOfContact<Contact>;
   const double dry = coupling.load_friction, viscous = coupling.load_viscous;
-  const RubbingMass<Part> load{motion.load_w, coupling.load_mobility, duration_s, {contact, dry, viscous}};
+  const bool more_on_load = dry > 0.5;
+  const RubbingMass<Part> load{
+      motion.load_w, coupling.load_mobility, duration_s, {contact, dry, viscous, more_on_load}};
   if (!coupling.all_on_load()) {
-    const RubbingMass<Part> motor{motion.w, coupling.motor_mobility, duration_s, {contact, 1.0 - dry, 1.0 - viscous}};
+    const RubbingMass<Part> motor{
+        motion.w, coupling.motor_mobility, duration_s, {contact, 1.0 - dry, 1.0 - viscous, !more_on_load}};
     move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
   } else {
     const FreeMass motor{motion.w, duration_s * coupling.motor_mobility};
@@ -121,7 +132,7 @@ template <typename Contact>
   } else if (motion.load_w != 0.0 && motion.w != 0.0) {
     using Part = PartOfContact<Contact>;
     const double dry = coupling.load_friction, viscous = coupling.load_viscous;
-    const Part on_load{contact, dry, viscous}, on_motor{contact, 1.0 - dry, 1.0 - viscous};
+    const Part on_load{contact, dry, viscous, false}, on_motor{contact, 1.0 - dry, 1.0 - viscous, false};
     const GlidingMass load{motion.load_w, {motion.load_w, coupling.load_mobility, duration_s, on_load}};
     const GlidingMass motor{motion.w, {motion.w, coupling.motor_mobility, duration_s, on_motor}};
     done = move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);

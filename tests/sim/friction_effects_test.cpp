@@ -211,6 +211,32 @@ TEST(DwellStiction, FollowingAMotionSeesThatTheRestIsForgottenBesideADrag) {
   }
 }
 
+sim::DriveDescription two_masses_with_dwell(double load_friction) {
+  return with(with(stribeck_drive(), "dwell_stiction", {{"gain", 0.4}, {"time_constant", 2.0}}), "compliance",
+              {{"resonance", 60.0},
+               {"damping_ratio", 0.02},
+               {"load_fraction", 0.4},
+               {"load_friction", load_friction},
+               {"load_viscous", 0.0}});
+}
+
+TEST(DwellStiction, OfTwoMassesRestsWhileTheLoadSwings) {
+  for (const double load_friction : {0.0, 0.4, 1.0}) {
+    const Drive drive(two_masses_with_dwell(load_friction));
+    DriveState state = drive.at(0.0, 0.0);
+    if (load_friction < 0.5) state.load_w = 0.1;  // its force remains below breakaway
+    EXPECT_NEAR(run(drive, state, 0.0, 3000, 0.001).rest_s, 3.0, 0.01) << load_friction;
+  }
+}
+
+TEST(DwellStiction, OfTwoMassesIsSeenWhileFollowingARest) {
+  const Drive drive(two_masses_with_dwell(0.0));
+  DriveState state = drive.at(0.0, 0.0);
+  for (int k = 0; k < 3000; ++k) drive.follow(state, 0.1, k % 2 * 0.001, 0.0, 0.001 * k, 0.001);
+  EXPECT_NEAR(state.rest_s, 3.0, 0.01);
+  EXPECT_NEAR(state.breakaway_gain, 0.4 * (1.0 - std::exp(-1.5)), 1e-3);
+}
+
 TEST(DwellStiction, IsGoneAfterAMotion) {
   const Drive drive(with(stribeck_drive(), "dwell_stiction", {{"gain", 0.4}, {"time_constant", 2.0}}));
   DriveState state = run(drive, drive.at(0.0, 0.0), 0.0, 1000, 0.01);
