@@ -56,7 +56,7 @@ constexpr double kOpenRace = 1.25;
 /// Budget for each start near a finalist: enough to find the deepest local minimum.
 constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
 constexpr std::size_t kBestOfTryout = 4;
-constexpr int kFirstSteps = 2;  // of each start, before the better ones are fitted further
+constexpr int kFirstSteps = 3;  // of each start, before the better ones are fitted further
 /// If the base itself needs many small steps, so does every candidate. Each candidate then gets this share of its
 /// budget.
 constexpr double kCostlyPart = 0.4;
@@ -181,8 +181,10 @@ class KindSearch {
         coarse_error_(fit_model(model, coarse_, budgeted(kFirstLook)).robust),
         medium_error_(fit_model(model, medium_, budgeted(kSeriousFit)).robust) {}
 
-  std::vector<Candidate> run(const std::vector<const sim::EffectInfo*>& infos, const ShareDone& progress) {
-    look_at_probable(infos);
+  /// `drops`: leaves out effects that the force balance or a leader that explains the records rules out.
+  std::vector<Candidate> run(const std::vector<const sim::EffectInfo*>& infos, bool drops, const ShareDone& progress) {
+    drops_ = drops;
+    if (drops_) look_at_probable(infos);
     std::vector<const sim::EffectInfo*> others = infos;
     drop_what_is_told_apart(others);
     // Effects that need many small steps, although the base does not, follow when the others have been fitted.
@@ -195,7 +197,7 @@ class KindSearch {
     }
     look_at(now, part_of(progress, 0.0, 0.4));
     drop_what_is_told_apart(later);
-    const bool has_load = effort_.balance == nullptr || allows_second_mass(*effort_.balance, kinds_);
+    const bool has_load = !drops_ || effort_.balance == nullptr || allows_second_mass(*effort_.balance, kinds_);
     std::erase_if(then, [&](const std::vector<Start>& starts) {
       return std::ranges::find(later, starts.front().info) == later.end() ||
              (!has_load && sim::Drive(starts.front().model).has_second_mass());
@@ -212,13 +214,18 @@ class KindSearch {
     return options;
   }
 
-  /// Fits those effects of which the force balance holds one to be present, from where it has fitted them.
+  /// Fits those effects of which the force balance holds one to be present, from where it has fitted them. Waves begin
+  /// at the peaks of a spectrum, because the balance writes them as orders of a turn.
   void look_at_probable(const std::vector<const sim::EffectInfo*>& infos) {
     if (effort_.balance == nullptr) return;
     const std::vector<std::string> probable = probable_kinds(*effort_.balance, kinds_);
     std::vector<Start> starts;
     for (const sim::EffectInfo* info : infos) {
       if (std::ranges::find(probable, info->kind) == probable.end()) continue;
+      if (info->periodic) {
+        for (std::vector<Start>& peaks : starts_of({info})) std::ranges::move(peaks, std::back_inserter(starts));
+        continue;
+      }
       if (std::optional<sim::DriveDescription> start = balanced_start(*effort_.balance, kinds_, *info))
         starts.push_back({.info = info, .model = *std::move(start), .balanced = true});
     }
@@ -229,7 +236,7 @@ class KindSearch {
   /// If an effect explains the records, only those remain of interest that may be confused with it and that the force
   /// balance does not tell from it.
   void drop_what_is_told_apart(std::vector<const sim::EffectInfo*>& infos) const {
-    if (race_.empty() || !explains(race_.front())) return;
+    if (!drops_ || race_.empty() || !explains(race_.front())) return;
     const sim::EffectInfo& leader = *race_.front().info;
     std::erase_if(infos, [&](const sim::EffectInfo* other) {
       return other == &leader || (!is_confused_with(leader, *other) && !is_confused_with(*other, leader)) ||
@@ -330,8 +337,9 @@ class KindSearch {
       if (is_new(start)) list.push_back(start);
     if (list.empty()) return list;
     Start& leader = list.front();
-    // A fit that leaves no more than the noise floor has found no poor local minimum.
-    if (error_over_own_floors(leader.model, medium_).combined > 1.0)
+    // A fit that leaves no more than the noise floor has found no poor local minimum. Given effects may change nothing
+    // there, and are still to be fitted as well as possible.
+    if (!drops_ || error_over_own_floors(leader.model, medium_).combined > 1.0)
       leader.model =
           shaken(leader, effort_.nominal, suited_to(leader.model, affordable(medium_, leader.model, kSeriousFit)));
     // Such an effect may have a larger error only because the base was biased.
@@ -376,6 +384,7 @@ class KindSearch {
   const RecordSet &training_, &validation_;
   const SearchEffort& effort_;
   RecordSet coarse_, medium_, last_;
+  bool drops_ = false;
   bool is_costly_;  ///< the base itself needs many small steps
   double coarse_error_, medium_error_;
   std::vector<Start> starts_, race_;  ///< after the first look, and after the serious fits; best first
@@ -395,14 +404,14 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
     if (is_applicable(*info, model, training) && !is_among(kinds, info->kind) &&
         (effort.absent == nullptr || !is_among(*effort.absent, info->kind)))
       infos.push_back(info);
-  return search_kinds(infos, model, kinds, training, validation, progress, effort);
+  return KindSearch(model, kinds, training, validation, effort).run(infos, true, progress);
 }
 
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                     const RecordSet& training, const RecordSet& validation, const ShareDone& progress,
                                     const SearchEffort& effort) {
-  return KindSearch(model, kinds, training, validation, effort).run(infos, progress);
+  return KindSearch(model, kinds, training, validation, effort).run(infos, false, progress);
 }
 
 }  // namespace host

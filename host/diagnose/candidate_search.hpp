@@ -44,13 +44,14 @@ struct SearchEffort {
 };
 
 /// Fits `model` with each applicable effect added. `kinds`: effects that the model already has beyond the base.
-/// Candidates that gain nothing on a few windows are not fitted further. Effects that need many small steps are left
-/// out if another one explains the records and is not confused with them. The result is sorted by log loss, best first.
+/// Candidates that gain nothing on a few windows are not fitted further. If an effect explains the records, others are
+/// left out unless they may be confused with it and the force balance does not tell them from it; so are second masses
+/// that the balance holds less probable than nothing. The result is sorted by log loss, best first.
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
                                          const ShareDone& progress = {}, const SearchEffort& effort = {});
 
-/// The same for the given effects only; each must be applicable.
+/// The same for the given effects only, none of which is left out; each must be applicable.
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                     const RecordSet& training, const RecordSet& validation,
