@@ -292,9 +292,13 @@ void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double
 
 double Drive::follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const {
   if (second_mass) {
+    if (dwell_gain <= 0.0) {
+      observe(state, u_V, x1, t_s, duration_s);
+      return 0.0;
+    }
     const DriveMotion before = static_cast<const DriveMotion&>(state);
     observe(state, u_V, x1, t_s, duration_s);
-    if (dwell_gain > 0.0) follow_rest_of_two(state, before, u_V, w1, t_s, duration_s);
+    follow_rest_of_two(state, before, u_V, w1, t_s, duration_s);
     return 0.0;
   }
   const double w0 = state.w;

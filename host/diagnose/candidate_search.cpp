@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/claim.hpp"
@@ -165,9 +166,10 @@ void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescripti
 /// The search over several effects on one base.
 class KindSearch {
  public:
-  /// Keeps references.
+  /// Keeps references. `drops`: leaves out effects that the force balance or a leader that explains the records rules
+  /// out.
   KindSearch(const sim::DriveDescription& model, const std::vector<std::string>& kinds, const RecordSet& training,
-             const RecordSet& validation, const SearchEffort& effort)
+             const RecordSet& validation, const SearchEffort& effort, bool drops)
       : model_(model),
         kinds_(kinds),
         training_(training),
@@ -176,33 +178,28 @@ class KindSearch {
         coarse_(thinned(training, effort.coarse_windows)),
         medium_(thinned(training, effort.medium_windows)),
         last_(thinned(training, effort.final_windows)),
+        drops_(drops),
         is_costly_(needs_own_floors(model)),
         // The base is also fitted to these few windows, so that the comparison with the candidates is fair.
         coarse_error_(fit_model(model, coarse_, budgeted(kFirstLook)).robust),
         medium_error_(fit_model(model, medium_, budgeted(kSeriousFit)).robust) {}
 
-  /// `drops`: leaves out effects that the force balance or a leader that explains the records rules out.
-  std::vector<Candidate> run(const std::vector<const sim::EffectInfo*>& infos, bool drops, const ShareDone& progress) {
-    drops_ = drops;
+  std::vector<Candidate> run(std::vector<const sim::EffectInfo*> infos, const ShareDone& progress) {
     if (drops_) look_at_probable(infos);
-    std::vector<const sim::EffectInfo*> others = infos;
-    drop_what_is_told_apart(others);
+    const sim::EffectInfo* leader = explaining_effect();
+    std::erase_if(infos, [&](const sim::EffectInfo* info) { return is_ruled_out_by(leader, *info); });
     // Effects that need many small steps, although the base does not, follow when the others have been fitted.
-    std::vector<const sim::EffectInfo*> later;
-    std::vector<std::vector<Start>> now, then;
-    for (std::vector<Start>& starts : starts_of(others)) {
-      const bool waits = !is_costly_ && needs_own_floors(starts.front().model);
-      if (waits) later.push_back(starts.front().info);
-      (waits ? then : now).push_back(std::move(starts));
-    }
-    look_at(now, part_of(progress, 0.0, 0.4));
-    drop_what_is_told_apart(later);
+    std::vector<std::vector<Start>> first, later;
+    for (std::vector<Start>& starts : starts_of(infos))
+      (is_costly_ || !needs_own_floors(starts.front().model) ? first : later).push_back(std::move(starts));
+    look_at(first, part_of(progress, 0.0, 0.4));
+    leader = explaining_effect();
     const bool has_load = !drops_ || effort_.balance == nullptr || allows_second_mass(*effort_.balance, kinds_);
-    std::erase_if(then, [&](const std::vector<Start>& starts) {
-      return std::ranges::find(later, starts.front().info) == later.end() ||
-             (!has_load && sim::Drive(starts.front().model).has_second_mass());
+    std::erase_if(later, [&](const std::vector<Start>& starts) {
+      const Start& start = starts.front();
+      return is_ruled_out_by(leader, *start.info) || (!has_load && sim::Drive(start.model).has_second_mass());
     });
-    look_at(then, part_of(progress, 0.4, 0.7));
+    look_at(later, part_of(progress, 0.4, 0.7));
     std::vector<Candidate> candidates = candidates_of(finalists());
     if (progress) progress(1.0);
     return candidates;
@@ -233,15 +230,17 @@ class KindSearch {
     std::ranges::move(starts, std::back_inserter(race_));
   }
 
-  /// If an effect explains the records, only those remain of interest that may be confused with it and that the force
-  /// balance does not tell from it.
-  void drop_what_is_told_apart(std::vector<const sim::EffectInfo*>& infos) const {
-    if (!drops_ || race_.empty() || !explains(race_.front())) return;
-    const sim::EffectInfo& leader = *race_.front().info;
-    std::erase_if(infos, [&](const sim::EffectInfo* other) {
-      return other == &leader || (!is_confused_with(leader, *other) && !is_confused_with(*other, leader)) ||
-             (effort_.balance != nullptr && are_told_apart(*effort_.balance, kinds_, leader.kind, other->kind));
-    });
+  /// The leader, if it explains the records and may rule out others; or nullptr.
+  const sim::EffectInfo* explaining_effect() const {
+    return drops_ && !race_.empty() && explains(race_.front()) ? race_.front().info : nullptr;
+  }
+
+  /// Beside a leader that explains the records, only those effects are of interest that may be confused with it and
+  /// that the force balance does not tell from it.
+  bool is_ruled_out_by(const sim::EffectInfo* leader, const sim::EffectInfo& other) const {
+    if (leader == nullptr) return false;
+    return &other == leader || (!is_confused_with(*leader, other) && !is_confused_with(other, *leader)) ||
+           (effort_.balance != nullptr && are_told_apart(*effort_.balance, kinds_, leader->kind, other.kind));
   }
 
   /// The starts of each effect; effects without a start are left out.
@@ -295,9 +294,9 @@ class KindSearch {
     FitOptions few_steps = budgeted(kFirstLook);
     few_steps.most_iterations = kFirstSteps;
     fit_all(starts, coarse_, few_steps, coarse_error_, progress);
-    std::vector<Start> others(std::next(starts.begin(), std::ptrdiff_t(std::min(2 * effort_.finalists, starts.size()))),
-                              starts.end());
-    starts.resize(starts.size() - others.size(), starts.front());
+    const auto behind = starts.begin() + static_cast<std::ptrdiff_t>(std::min(2 * effort_.finalists, starts.size()));
+    std::vector<Start> others(std::make_move_iterator(behind), std::make_move_iterator(starts.end()));
+    starts.erase(behind, starts.end());
     fit_all(starts, coarse_, budgeted(kFirstLook), coarse_error_, progress);
     std::ranges::move(others, std::back_inserter(starts));
     std::ranges::stable_sort(starts, {}, &Start::error);
@@ -384,7 +383,7 @@ class KindSearch {
   const RecordSet &training_, &validation_;
   const SearchEffort& effort_;
   RecordSet coarse_, medium_, last_;
-  bool drops_ = false;
+  bool drops_;
   bool is_costly_;  ///< the base itself needs many small steps
   double coarse_error_, medium_error_;
   std::vector<Start> starts_, race_;  ///< after the first look, and after the serious fits; best first
@@ -404,14 +403,14 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
     if (is_applicable(*info, model, training) && !is_among(kinds, info->kind) &&
         (effort.absent == nullptr || !is_among(*effort.absent, info->kind)))
       infos.push_back(info);
-  return KindSearch(model, kinds, training, validation, effort).run(infos, true, progress);
+  return KindSearch(model, kinds, training, validation, effort, true).run(std::move(infos), progress);
 }
 
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                     const RecordSet& training, const RecordSet& validation, const ShareDone& progress,
                                     const SearchEffort& effort) {
-  return KindSearch(model, kinds, training, validation, effort).run(infos, false, progress);
+  return KindSearch(model, kinds, training, validation, effort, false).run(infos, progress);
 }
 
 }  // namespace host

@@ -281,7 +281,7 @@ class Search {
     ScreenedModel& last = screen_.chosen.back();
     if (last.kinds.back() != kind) taken.words = last.words;
     taken.probability = last.probability;
-    taken.confidence = last.confidence;
+    note_odds(taken, last.log_odds);
     last = std::move(taken);
   }
 
@@ -398,7 +398,7 @@ class Search {
     std::erase(left.kinds, kind);
     left.words = now.words;
     left.probability = now.probability;
-    left.confidence = now.confidence;
+    note_odds(left, now.log_odds);
     return left;
   }
 
