@@ -95,6 +95,10 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   fit.colour = start.colour;
   VectorXd unit_weights = VectorXd::Ones(n), factors;
   double square = -1.0, before = -HUGE_VAL;
+  if (start.weights.size() == n) {
+    square = start.noise * start.noise;
+    unit_weights = start.weights * square;
+  }
   MatrixXd gram;
   VectorXd white_y, deviations_now;
   MatrixXd white;
@@ -150,7 +154,11 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
 
 EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
                                double give_up) const {
-  EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
+  EvidenceStart start{.colour = before.colour,
+                      .sizes = before.sizes,
+                      .weights = before.weights,
+                      .noise = before.noise,
+                      .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
   const VectorXd none = no_memory();
   if ((before.sizes.array() <= none.array()).all()) return same;
