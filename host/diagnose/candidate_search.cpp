@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/balance_odds.hpp"
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/effect_start.hpp"
@@ -211,18 +212,13 @@ class KindSearch {
     return options;
   }
 
-  /// Fits those effects of which the force balance holds one to be present, from where it has fitted them. Waves begin
-  /// at the peaks of a spectrum, because the balance writes them as orders of a turn.
+  /// Fits those effects of which the force balance holds one to be present, from where it has fitted them.
   void look_at_probable(const std::vector<const sim::EffectInfo*>& infos) {
     if (effort_.balance == nullptr) return;
     const std::vector<std::string> probable = probable_kinds(*effort_.balance, kinds_);
     std::vector<Start> starts;
     for (const sim::EffectInfo* info : infos) {
       if (std::ranges::find(probable, info->kind) == probable.end()) continue;
-      if (info->periodic) {
-        for (std::vector<Start>& peaks : starts_of({info})) std::ranges::move(peaks, std::back_inserter(starts));
-        continue;
-      }
       if (std::optional<sim::DriveDescription> start = balanced_start(*effort_.balance, kinds_, *info))
         starts.push_back({.info = info, .model = *std::move(start), .balanced = true});
     }
@@ -277,9 +273,9 @@ class KindSearch {
   void look_at(const std::vector<std::vector<Start>>& effects, const ShareDone& progress) {
     std::vector<Start> starts = chosen_starts(effects, model_, medium_);
     for (const std::vector<Start>& of_one : effects) {
-      // Periods come from a spectrum over those that repeat within the travel, second masses from a scan.
       const sim::EffectInfo& info = *of_one.front().info;
-      if (effort_.balance == nullptr || info.periodic) continue;
+      if (effort_.balance == nullptr) continue;
+      // Second masses come from a scan.
       if (std::optional<sim::DriveDescription> start = balanced_start(*effort_.balance, kinds_, info);
           start && !needs_own_floors(*start))
         starts.push_back({.info = &info, .model = *std::move(start), .balanced = true});

@@ -63,7 +63,11 @@ bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double 
 }
 
 double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more) {
-  return explained_share(combined_of_both(less), combined_of_both(more));
+  // A set at its noise floor has nothing left to explain, even if a further effect lowers its error.
+  const auto above_noise = [](const JudgedCandidate& candidate) {
+    return std::sqrt(std::max(candidate.train_after, kComplete) * std::max(candidate.after, kComplete));
+  };
+  return explained_share(above_noise(less), above_noise(more));
 }
 
 std::size_t parameters_of(const JudgedCandidate& candidate) {

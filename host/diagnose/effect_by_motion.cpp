@@ -15,7 +15,7 @@ namespace host {
 namespace {
 
 std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo& effect,
-                                        const sim::DriveDescription& nominal) {
+                                        const sim::DriveDescription& nominal, const EffortScreen* balance) {
   if (!sets.moves_enough)
     throw Failure(ExitCode::refused, fmt::format("{}: fitting and validating it needs {:.1f} s more motion",
                                                  effect.kind, std::max(0.1, missing_motion_s(sets))));
@@ -26,6 +26,7 @@ std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo
                               effect.kind));
   SearchEffort effort = SearchEffort{}.over(sets.window_s);
   effort.nominal = &nominal;
+  effort.balance = balance;
   std::vector<Candidate> found = search_kinds({&effect}, sets.base, {}, sets.training, sets.validation, {}, effort);
   if (found.empty()) return {};
   return EffectByMotion{std::move(sets), std::move(found.front())};
@@ -34,13 +35,14 @@ std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo
 }  // namespace
 
 std::optional<EffectByMotion> fit_effect_by_motion(const sim::EffectInfo& effect, const sim::DriveDescription& model,
-                                                   const Measurements& measured, const PreparedSets& fitted) {
-  std::optional<EffectByMotion> found = fitted_on(fitted, effect, model);
+                                                   const Measurements& measured, const PreparedSets& fitted,
+                                                   const EffortScreen* balance) {
+  std::optional<EffectByMotion> found = fitted_on(fitted, effect, model, balance);
   if (!found || !is_rough(error_of(sim::Drive(found->best.model), found->sets.validation))) return found;
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   return fitted_on(prepare_sets(model, training, validation, rough_window_s(training),
                                 rough_measure(found->best.model, training, validation)),
-                   effect, model);
+                   effect, model, balance);
 }
 
 }  // namespace host

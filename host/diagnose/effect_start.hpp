@@ -2,13 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "host/diagnose/model_fit.hpp"
-#include "host/effort/effort_screen.hpp"
 #include "sim/effect.hpp"
 
 namespace host {
@@ -56,22 +53,5 @@ void fit_own_size(Start& start, const sim::DriveDescription& base, const RecordS
 /// Keeps the two best starts of each effect, and the best one of each way to share friction between motor and load.
 /// Starts of the force balance do not count. `starts`: in the order of their errors.
 void keep_best(std::vector<Start>& starts);
-
-/// The kinds of which the force balance holds one to be present beside `kinds` with a probability of at least kClaimed,
-/// most probable first. Empty if it did not try any, or if no such group exists.
-std::vector<std::string> probable_kinds(const EffortScreen& balance, const std::vector<std::string>& kinds);
-
-/// Whether the balance tried both effects beside `kinds` and holds `other` to be impossible beside the leader.
-bool are_told_apart(const EffortScreen& balance, const std::vector<std::string>& kinds, std::string_view leader,
-                    std::string_view other);
-
-/// Whether the force balance found a second mass more probable than no further effect beside `kinds` (or, if it did not
-/// try these, beside the base). True if it cannot show a second mass, because the speed hardly changes.
-bool allows_second_mass(const EffortScreen& balance, const std::vector<std::string>& kinds);
-
-/// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base
-/// has not taken over the part of the effect, as one may that was fitted to the motion without it.
-std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,
-                                                    const sim::EffectInfo& info);
 
 }  // namespace host

@@ -197,13 +197,16 @@ Addition addition_of(const EffortScreen& screen, const ScreenedModel& added, con
   return addition;
 }
 
-/// The addition by least squares, if the regression decides and knows the effect.
-std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const std::string& kind,
-                                      const PreparedSets& sets) {
+/// The force balance with this effect as its only candidate.
+EffortScreen screen_for(const std::string& kind, const sim::DriveDescription& model, const PreparedSets& sets) {
   std::vector<std::string> others;
   for (const sim::EffectInfo* effect : sim::catalogue())
     if (effect->kind != kind) others.emplace_back(effect->kind);
-  const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 1, others);
+  return screen_effort(model, sets.training, sets.validation, 1, others);
+}
+
+/// The addition by least squares, if the regression decides and knows the effect.
+std::optional<Addition> add_by_effort(const EffortScreen& screen, const std::string& kind, const PreparedSets& sets) {
   if (!effort_decides(screen, sets.validation) || screen.steps.empty()) return {};
   for (const ScreenedModel& tried : screen.steps.front()) {
     if (tried.kinds.size() != 1 || tried.kinds.front() != kind) continue;
@@ -238,8 +241,9 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
   const PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
-  if (std::optional<Addition> by_effort = add_by_effort(model, kind, split)) return *by_effort;
-  std::optional<EffectByMotion> fitted = fit_effect_by_motion(*info, model, measured, with_base_fitted(split));
+  const EffortScreen screen = screen_for(kind, model, split);
+  if (std::optional<Addition> by_effort = add_by_effort(screen, kind, split)) return *by_effort;
+  std::optional<EffectByMotion> fitted = fit_effect_by_motion(*info, model, measured, with_base_fitted(split), &screen);
   if (!fitted)
     throw Failure(
         ExitCode::refused,

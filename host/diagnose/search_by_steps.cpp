@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "host/diagnose/balance_odds.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
@@ -200,6 +201,17 @@ void finish_fit(Candidate& candidate, const PreparedSets& sets) {
   }
 }
 
+/// Of candidates with the same effects, keeps the best. Best first.
+void keep_best_of_each(std::vector<Candidate>& candidates) {
+  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
+  std::vector<Candidate> best;
+  for (Candidate& candidate : candidates)
+    if (std::ranges::none_of(
+            best, [&](const Candidate& other) { return std::ranges::is_permutation(other.kinds, candidate.kinds); }))
+      best.push_back(std::move(candidate));
+  candidates = std::move(best);
+}
+
 /// A spring is a gap of width zero, so every gap is compared with a spring that is fitted equally well. The spring
 /// replaces the gap if the encoder does not show the gap, or if the spring predicts the records at least as well. If
 /// `absent` contains the spring, nothing is replaced. Of two candidates with the same effects, the better one remains.
@@ -224,13 +236,7 @@ void compare_with_springs(std::vector<Candidate>& candidates, const PreparedSets
   });
   if (springs.empty()) return;
   std::ranges::move(springs, std::back_inserter(candidates));
-  std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
-  std::vector<Candidate> best;
-  for (Candidate& candidate : candidates)
-    if (std::ranges::none_of(
-            best, [&](const Candidate& other) { return std::ranges::is_permutation(other.kinds, candidate.kinds); }))
-      best.push_back(std::move(candidate));
-  candidates = std::move(best);
+  keep_best_of_each(candidates);
 }
 
 /// Exchanges effects of the best candidate. If that is unphysical, as a voltage limit that stands for one of the
@@ -245,6 +251,25 @@ void add_exchanged(std::vector<Candidate>& candidates, const std::vector<Candida
   compare_with_springs(exchanged, sets);
   std::ranges::move(exchanged, std::back_inserter(candidates));
   std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
+}
+
+/// The candidates to which a further effect is added: the best physical one and, if it is another, the best of those
+/// whose last effect the force balance holds to be present beside the others. An effect that the balance cannot show,
+/// such as a gain of the tachometer, may explain more of the motion than the effect that the balance shows, and then
+/// takes the base to where that one cannot be found.
+std::vector<Candidate> to_be_extended(const std::vector<Candidate>& candidates, const PreparedSets& sets,
+                                      const EffortScreen* balance) {
+  std::vector<Candidate> leaders;
+  for (const Candidate& candidate : candidates) {
+    if (!is_physical(candidate, sets)) continue;
+    const std::vector<std::string> others(candidate.kinds.begin(), candidate.kinds.end() - 1);
+    const std::vector<std::string> probable =
+        balance == nullptr ? std::vector<std::string>{} : probable_kinds(*balance, others);
+    const bool is_probable = std::ranges::find(probable, candidate.kinds.back()) != probable.end();
+    if (leaders.empty() || is_probable) leaders.push_back(candidate);
+    if (is_probable) break;
+  }
+  return leaders;
 }
 
 }  // namespace
@@ -278,9 +303,11 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   if (found.singles.empty()) return found;
   for (const Candidate& candidate : found.singles)
     if (!is_physical(candidate, sets)) excluded.push_back(candidate.kinds.back());
-  const auto single = std::ranges::find_if(found.singles, physical);
-  if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
-  found.pairs = search(single->model, single->kinds, 0.5, 0.8);
+  const std::vector<Candidate> leaders = to_be_extended(found.singles, sets, effort.balance);
+  if (leaders.empty() || Errors(leaders.front().model, sets).validation <= kExplained) return found;
+  for (const Candidate& single : leaders)
+    std::ranges::move(search(single.model, single.kinds, 0.5, 0.8), std::back_inserter(found.pairs));
+  keep_best_of_each(found.pairs);
   const auto pair = std::ranges::find_if(found.pairs, physical);
   if (pair == found.pairs.end()) return found;
   renew(pair->model);

@@ -1,5 +1,5 @@
 // What the force balance's odds say about the effects for which the motion is searched.
-#include "host/diagnose/effect_start.hpp"
+#include "host/diagnose/balance_odds.hpp"
 
 #include <gmock/gmock.h>
 
@@ -69,6 +69,18 @@ TEST(ForceBalanceOdds, AStartIsFoundInAnyOrderOfTheEffects) {
   const auto start = host::balanced_start(balance(), {"cogging"}, offset);
   ASSERT_TRUE(start);
   EXPECT_EQ(start->effects.back().kind, "constant_torque");
+}
+
+TEST(ForceBalanceOdds, AnOrderOfATurnStartsAsAWaveWithItsOwnPeriod) {
+  host::EffortScreen screen = balance();
+  host::ScreenedModel wave = tried({"cogging"}, 0.99, 40.0);
+  wave.model.effects.back().parameters = {{"cosine_4", 0.1}, {"sine_4", 0.2}, {"period", 10.0}};
+  screen.steps.front().push_back(wave);
+  const auto start = host::balanced_start(screen, {}, *sim::find_effect("cogging"));
+  ASSERT_TRUE(start);
+  const sim::EffectEntry& entry = start->effects.back();
+  EXPECT_THAT(entry.parameters,
+              ElementsAre(std::pair("cosine", 0.1), std::pair("period", 2.5), std::pair("sine", 0.2)));
 }
 
 }  // namespace

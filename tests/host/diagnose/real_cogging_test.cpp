@@ -34,7 +34,11 @@ TEST(RealCogging, IsImprovedByItsOrders) {
                                          {read("speed-6.3-old-a.csv"), read("speed-6.3-old-b.csv")});
   const host::Improvement improvement = host::improve(model, measured);
   EXPECT_FALSE(improvement.kept_given);
-  EXPECT_LT(improvement.error.validate.combined, improvement.first.given_error.validate.combined);
+  // RMS in rad/s and mm: both models leave over a hundred noise floors, and these floors differ between the models.
+  const auto& given = improvement.first.given_error.validate.channels;
+  const auto& improved = improvement.error.validate.channels;
+  ASSERT_EQ(improved.size(), given.size());
+  for (std::size_t k = 0; k < given.size(); ++k) EXPECT_LT(improved[k].rms, 0.7 * given[k].rms) << given[k].name;
   std::vector<double> orders;
   for (const sim::EffectEntry& entry : improvement.model.effects)
     if (entry.kind == "cogging")

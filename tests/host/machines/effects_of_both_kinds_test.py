@@ -21,8 +21,11 @@ AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # - a gap whose load has no friction, and a delay, which no fit over small differences finds together
 # - an asymmetry of the friction, and cogging: a fit of the pair over the floors of the asymmetry alone leaves the period
 #   0.06 % off, and a further effect was named for the rest
+# - nonlinear viscous friction and a tachometer's gain, which explains more of the motion: beside it, the base takes over
+#   the friction
 # - a limit of the current, for which a voltage limit at its bound stands, an offset, and friction along the travel
-CASES = ((7, 3, 5), (601, 2, 1), (910, 2, 5), (601, 2, 2), (910, 2, 10), (910, 2, 11), (920, 2, 0), (911, 3, 0))
+CASES = ((7, 3, 5), (601, 2, 1), (910, 2, 5), (601, 2, 2), (910, 2, 10), (910, 2, 11), (951, 2, 12), (920, 2, 0),
+         (911, 3, 0))
 # a gap with friction on both sides, and frictional memory: only the gap must be added
 SHARED_FRICTION = (601, 2, 9)
 
