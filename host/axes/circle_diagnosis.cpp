@@ -34,6 +34,8 @@ constexpr double kWorthSaying = 0.02;  ///< smallest probability of a reported a
 
 using Causes = std::vector<CircleCause>;
 
+bool is_friction(const CircleCause& one) { return one.kind == "reversal_spike" || one.kind == "stick_slip"; }
+
 std::vector<RowRun> runs_of(const CircleRows& rows) {
   std::vector<RowRun> runs;
   for (const CircleBlock& block : rows.blocks()) runs.push_back({block.first, block.end});
@@ -105,17 +107,19 @@ class CircleSearch {
     std::vector<double> probability;
     std::vector<std::vector<std::pair<std::string, double>>> instead;
     Causes best;  ///< most probable of all sets that were tried
+    EvidenceFit best_fit;
   };
 
   Result run() const {
-    Causes causes = forward();
-    for (int round = 0; round < 4; ++round) {
-      Result result = judged(causes);
-      const auto worst = std::ranges::min_element(result.probability);
-      if (worst == result.probability.end() || *worst > 0.5) return result;
-      causes = result.best;
+    const Causes first = forward();
+    Result result = judged(first, full_.fit(columns(first), deviations(first)));
+    for (int round = 0; round < 4 && std::ranges::any_of(result.probability, [](double p) { return p <= 0.5; });
+         ++round) {
+      const Causes causes = result.best;
+      EvidenceFit near = again(result.best_fit, causes), anew = full_.fit(columns(causes), deviations(causes));
+      result = judged(causes, near.log_evidence > anew.log_evidence ? near : anew);
     }
-    return judged(causes);
+    return result;
   }
 
  private:
@@ -160,6 +164,11 @@ class CircleSearch {
 
   static bool is_wave(const CircleCause& one) { return one.period_mm || one.frequency_Hz; }
 
+  /// Whether one contains the other: an axis that sticks has its reversal spikes by the same friction.
+  static bool overlap(const CircleCause& a, const CircleCause& b) {
+    return is_same(a, b) || (a.axis == b.axis && is_friction(a) && is_friction(b));
+  }
+
   static bool is_same(const CircleCause& a, const CircleCause& b) {
     if (a.kind != b.kind || a.axis != b.axis) return false;
     const auto near = [](const std::optional<double>& one, const std::optional<double>& other) {
@@ -173,7 +182,7 @@ class CircleSearch {
                                                         const Causes& causes, bool with_waves) const {
     std::vector<std::pair<double, CircleCause>> list;
     const auto add = [&](const CircleCause& one) {
-      if (std::ranges::any_of(causes, [&](const CircleCause& has) { return is_same(has, one); })) return;
+      if (std::ranges::any_of(causes, [&](const CircleCause& has) { return overlap(has, one); })) return;
       const MatrixXd scaled = one.columns * one.deviations.asDiagonal();
       const std::vector<int> sign(static_cast<std::size_t>(scaled.cols()), 0);
       const double gain =
@@ -201,8 +210,13 @@ class CircleSearch {
       seen.push_back(entry.second);
       return false;
     });
-    if (list.size() > kTried) list.resize(kTried);
-    return list;
+    // Those that overlap a tried one are tried too: their gains at the same noise say little about which is better.
+    std::vector<std::pair<double, CircleCause>> tried;
+    for (const auto& entry : list)
+      if (tried.size() < kTried ||
+          std::ranges::any_of(tried, [&](const auto& one) { return overlap(one.second, entry.second); }))
+        tried.push_back(entry);
+    return tried;
   }
 
   /// Refines each wave's period or frequency together with all other causes.
@@ -248,8 +262,8 @@ class CircleSearch {
   }
 
   /// Probability of each cause against no cause and against its alternatives, with the memory.
-  Result judged(const Causes& causes) const {
-    Result result{causes, full_.fit(columns(causes), deviations(causes)), {}, {}, causes};
+  Result judged(const Causes& causes, const EvidenceFit& fit) const {
+    Result result{causes, fit, {}, {}, causes, fit};
     const double all = result.fit.log_evidence + prior(causes);
     double best = all;
     for (std::size_t i = 0; i < causes.size(); ++i) {
@@ -259,12 +273,14 @@ class CircleSearch {
       std::vector<double> logs = {all, without.log_evidence + prior(rest)};
       std::vector<std::string> names = {"", "nothing"};
       std::vector<Causes> sets = {causes, rest};
+      std::vector<EvidenceFit> fits = {result.fit, without};
       for (const auto& [gain, one] : promising(full_, without, rest, false)) {
-        if (is_same(one, causes[i]) || without.log_evidence + prior(rest) + gain < all - kHopeless) continue;
+        const bool is_hopeless = without.log_evidence + prior(rest) + gain < all - kHopeless;
+        if (is_same(one, causes[i]) || (is_hopeless && !overlap(one, causes[i]))) continue;
         Causes other = rest;
         other.push_back(one);
-        const EvidenceFit fit = again(without, other);
-        logs.push_back(fit.log_evidence + prior(other));
+        fits.push_back(again(without, other));
+        logs.push_back(fits.back().log_evidence + prior(other));
         names.push_back(one.kind + " " + one.axis);
         sets.push_back(other);
       }
@@ -276,6 +292,7 @@ class CircleSearch {
         if (logs[k] <= best) continue;
         best = logs[k];
         result.best = sets[k];
+        result.best_fit = fits[k];
       }
     }
     return result;
@@ -306,7 +323,7 @@ double range_of(const VectorXd& values) { return values.maxCoeff() - values.minC
 /// Size of a cause: the amplitude of a wave, the largest value of a spike, else its factor.
 double amount_of(const CircleCause& cause, const VectorXd& factors, double um) {
   if (cause.period_mm || cause.frequency_Hz) return 0.5 * um;
-  if (cause.kind == "reversal_spike") return um;
+  if (is_friction(cause)) return um;
   return factors(0) * cause.amount_per_um;
 }
 
@@ -370,7 +387,7 @@ CircleFinding finding_of(const CircleRows& rows, const CircleSearch& search, con
   const VectorXd share = (found.cause.columns * found.factors).cwiseQuotient(rows.weights());
   double variance = slope.dot(covariance * slope) + rest_um * rest_um +
                     std::pow(shape_error_um(rows, found.cause, share, residual_um), 2);
-  if (found.cause.kind == "reversal_spike") variance += std::pow(spike_height_error_um(rows, share), 2);
+  if (is_friction(found.cause)) variance += std::pow(spike_height_error_um(rows, share), 2);
   const double reach = kNormal95 * std::sqrt(std::max(0.0, variance));
   found.ci95 = {std::max(0.0, found.um - reach), found.um + reach};
   return found;
@@ -386,31 +403,6 @@ double least_um(const std::vector<CirclePass>& passes) {
   for (const CirclePass& pass : passes)
     if (pass.outer_um.empty()) step = std::max(step, pass.count_um);
   return std::max(kMinorShare * deviation, step);
-}
-
-nlohmann::json optional_json(const std::optional<double>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
-}
-
-nlohmann::json findings_json(const std::vector<CircleFinding>& findings) {
-  using nlohmann::json;
-  json list = json::array();
-  for (const CircleFinding& found : findings) {
-    json instead = json::object();
-    for (const auto& [name, probability] : found.instead) instead[name] = probability;
-    list.push_back({{"kind", found.cause.kind},
-                    {"axis", found.cause.axis},
-                    {"um", found.um},
-                    {"ci95", found.ci95},
-                    {"probability", found.probability},
-                    {"amount", {{"value", found.amount}, {"unit", found.cause.amount_unit}}},
-                    {"period_mm", optional_json(found.cause.period_mm)},
-                    {"period_turns", optional_json(found.period_turns)},
-                    {"frequency_Hz", optional_json(found.cause.frequency_Hz)},
-                    {"instead", instead},
-                    {"next", cause_text(found.cause.kind).next}});
-  }
-  return list;
 }
 
 }  // namespace
@@ -457,44 +449,6 @@ std::vector<double> share_along(const CircleFinding& finding, const CirclePass& 
     share.push_back(sum);
   }
   return share;
-}
-
-nlohmann::json circle_json(const CircleDiagnosis& diagnosis) {
-  using nlohmann::json;
-  json unseen = json::array(), why = json::object(), passes = json::array();
-  for (const Unseen& one : diagnosis.unseen) {
-    unseen.push_back(one.kind);
-    why[one.kind] = one.why;
-  }
-  double G = 0.0, F_max = -HUGE_VAL, F_min = HUGE_VAL;
-  for (std::size_t i = 0; i < diagnosis.passes.size(); ++i) {
-    const CirclePass& pass = diagnosis.passes[i];
-    const CircleFigures& figures = diagnosis.figures[i];
-    passes.push_back({{"source", pass.source},
-                      {"direction", pass.is_ccw ? "ccw" : "cw"},
-                      {"feed_mm_s", pass.feed_mm_s},
-                      {"radius_mm", pass.radius_mm},
-                      {"G_um", figures.G_um},
-                      {"F_max_um", figures.F_max_um},
-                      {"F_min_um", figures.F_min_um}});
-    G = std::max(G, figures.G_um);
-    F_max = std::max(F_max, figures.F_max_um);
-    F_min = std::min(F_min, figures.F_min_um);
-  }
-  json iso = {{"G_um", G},         {"Gb_um", nullptr},  {"F_um", std::max(std::abs(F_max), std::abs(F_min))},
-              {"F_max_um", F_max}, {"F_min_um", F_min}, {"H_um", nullptr}};
-  if (diagnosis.both) {
-    iso["Gb_um"] = diagnosis.both->Gb_um;
-    iso["H_um"] = diagnosis.both->H_um;
-  }
-  return {{"format", "axis-circle/1"},
-          {"causes", findings_json(diagnosis.causes)},
-          {"minor", findings_json(diagnosis.minor)},
-          {"cannot_see", unseen},
-          {"cannot_see_why", why},
-          {"iso_230_4", iso},
-          {"passes", passes},
-          {"rest_um", diagnosis.rest_um}};
 }
 
 }  // namespace host

@@ -238,6 +238,7 @@ CirclePass pass_of(const PlaneRecord& plane, const Circle& circle, const std::ve
               (std::cos(at) * (plane.y_ref[k] - plane.y[k]) - std::sin(at) * (plane.x_ref[k] - plane.x[k]));
   }
   pass.lag_s = late / static_cast<double>(pass.t_s.size()) / pass.feed_mm_s;
+  pass.rests = {rests_of(pass, 'x'), rests_of(pass, 'y')};
   return pass;
 }
 

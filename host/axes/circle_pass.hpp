@@ -1,9 +1,11 @@
 // Turns of a circle at a steady feed, found in records of two axes.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "host/axes/circle_rests.hpp"
 #include "host/record/record.hpp"
 
 namespace host {
@@ -25,6 +27,7 @@ struct CirclePass {
   std::vector<double> t_s, angle_rad;  ///< from +X, counter-clockwise, by the encoders
   std::vector<double> encoder_um;      ///< radial deviation of the encoders
   std::vector<double> outer_um;        ///< radial deviation of the outer sensor; empty without one
+  std::array<AxisRests, 2> rests;      ///< of x and y
 
   double turn_rad_s() const { return feed_mm_s / radius_mm; }
   double direction() const { return is_ccw ? 1.0 : -1.0; }

@@ -18,7 +18,9 @@ std::string detail(const CircleFinding& found) {
     return fmt::format("{:.2f} µm every {:.3g} mm{}", found.amount, *cause.period_mm,
                        found.period_turns ? fmt::format(" ({:.3g} turns)", *found.period_turns) : "");
   if (cause.frequency_Hz) return fmt::format("{:.2f} µm at {:.3g} Hz", found.amount, *cause.frequency_Hz);
-  return fmt::format("{:.3g} {}", found.amount, cause.amount_unit);
+  std::string unit = cause.amount_unit;
+  if (unit.starts_with("um")) unit.replace(0, 1, "µ");
+  return fmt::format("{:.3g} {}", found.amount, unit);
 }
 
 std::string instead_text(const CircleFinding& found) {
@@ -35,6 +37,7 @@ Table causes_table(const CircleDiagnosis& diagnosis) {
       "µm: contribution of each cause alone to the circular deviation of both directions (largest minus smallest "
       "radial deviation), with its 95 % interval. Causes below a twentieth of the total are last.";
   table.headings = {"cause", "axis", "µm", "95 %", "probability", "size", "or instead"};
+  table.stacks = true;
   for (const auto* const list : {&diagnosis.causes, &diagnosis.minor})
     for (const CircleFinding& found : *list)
       table.rows.push_back({found.cause.kind, found.cause.axis, fmt::format("{:.2f}", found.um),
@@ -50,15 +53,15 @@ Table figures_table(const CircleDiagnosis& diagnosis) {
       "G: circular deviation, largest minus smallest radius about the best-fit centre. F: radial deviation from the "
       "nominal circle, largest and smallest. G(b): circular deviation of both directions together. H: hysteresis, "
       "largest difference of both directions at one angle. Means over one degree.";
-  table.headings = {"", "G", "F max", "F min"};
+  table.headings = {"", "G, G(b)", "F max", "F min", "H"};
   for (std::size_t i = 0; i < diagnosis.passes.size(); ++i) {
     const CircleFigures& one = diagnosis.figures[i];
     table.rows.push_back({name_of(diagnosis.passes[i]), fmt::format("{:.2f}", one.G_um),
-                          fmt::format("{:.2f}", one.F_max_um), fmt::format("{:.2f}", one.F_min_um)});
+                          fmt::format("{:.2f}", one.F_max_um), fmt::format("{:.2f}", one.F_min_um), ""});
   }
   if (diagnosis.both)
-    table.rows.push_back(
-        {fmt::format("G(b) {:.2f}, H {:.2f}", diagnosis.both->Gb_um, diagnosis.both->H_um), "", "", ""});
+    table.rows.push_back({"both directions, at the worst feed", fmt::format("{:.2f}", diagnosis.both->Gb_um), "", "",
+                          fmt::format("{:.2f}", diagnosis.both->H_um)});
   return table;
 }
 

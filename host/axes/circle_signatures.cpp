@@ -18,16 +18,10 @@ constexpr double kLeastNoise_um = 0.02;
 constexpr double kLeastLagAngle = 0.02;  ///< rad: below it, lag and delay have the same effect on the circle
 constexpr double kFirstKnot_s = 0.003, kKnotRatio = 1.6, kSpikeForms = 12.0;
 constexpr int kSpikeKnots = 7;
+/// Boundary lubrication, in which an axis sticks, lies below it: the paper's jogs at 0.1, 0.3 and 0.5 mm/s (p. 1504).
+constexpr double kStickSlip_mm_s = 0.5;
 
 constexpr int kLoopPowers = 5;
-
-/// Noise of the rows, estimated from their second differences.
-double noise_of(const Eigen::VectorXd& values) {
-  std::vector<double> differences;
-  for (Eigen::Index k = 2; k < values.size(); ++k)
-    differences.push_back(std::abs(values(k) - 2.0 * values(k - 1) + values(k - 2)));
-  return differences.empty() ? 1.0 : median(differences) / (0.6745 * std::sqrt(6.0));
-}
 
 double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
@@ -133,8 +127,48 @@ std::vector<SpikeForm> hats_over(double row_s) {
   return hats;
 }
 
-/// Adds spikes with two shapes: a rise with exponential decay, and straight lines.
+/// Rests between which an axis jumps; nothing if it does not. Factors: the breakaway lag, um, its fall with the speed,
+/// and the part of the circle's way that is missing while the axis rests.
+std::optional<CircleCause> sticking(const CircleRows& rows, char axis) {
+  const std::size_t at = axis == 'x' ? 0 : 1;
+  if (std::ranges::none_of(rows.passes(), [=](const CirclePass& pass) { return pass.rests[at].jumps; }))
+    return std::nullopt;
+  const auto signature = [=](std::vector<double> AxisRests::*list, double factor) -> CircleRows::Signature {
+    return [=](const CirclePass& pass, std::size_t k) {
+      const std::vector<double>& values = pass.rests[at].*list;
+      return values.empty() ? 0.0 : factor * values[k] * radial_part(pass, k, axis);
+    };
+  };
+  CircleCause made = cause(rows, "stick_slip", {axis},
+                           {signature(&AxisRests::level, -1.0), signature(&AxisRests::level_by_speed, 1.0),
+                            signature(&AxisRests::ahead_um, 1.0)},
+                           false);
+  made.deviations(2) = 1.0;
+  return made;
+}
+
+/// The same with spikes of lag in the passes in which the axis does not stick, by the same friction.
+CircleCause with_spikes(const CircleRows& rows, CircleCause sticks, const CircleCause& spikes) {
+  const std::size_t at = sticks.axis == "x" ? 0 : 1;
+  Eigen::MatrixXd columns(sticks.columns.rows(), sticks.columns.cols() + spikes.columns.cols());
+  columns << sticks.columns, spikes.columns;
+  for (const CircleBlock& block : rows.blocks())
+    if (rows.passes()[block.pass].rests[at].jumps)
+      columns.block(block.first, sticks.columns.cols(), block.end - block.first, spikes.columns.cols()).setZero();
+  Eigen::VectorXd deviations(columns.cols());
+  deviations << sticks.deviations, spikes.deviations;
+  for (const CircleRows::Signature& one : spikes.signatures)
+    sticks.signatures.emplace_back(
+        [=](const CirclePass& pass, std::size_t k) { return pass.rests[at].jumps ? 0.0 : one(pass, k); });
+  sticks.columns = columns;
+  sticks.deviations = deviations;
+  sticks.log_prior += spikes.log_prior;
+  return sticks;
+}
+
+/// Adds spikes with two shapes: a rise with exponential decay, and straight lines; and stick-slip with them.
 void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& list) {
+  const std::size_t begin = list.size();
   for (const bool by_end : {false, true}) {
     for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035}) {
       const SpikeForm rise = [=](double t) { return t / decay_s * std::exp(1.0 - t / decay_s); };
@@ -143,6 +177,8 @@ void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& lis
     }
     list.push_back(spike(rows, axis, hats_over, by_end));
   }
+  if (const auto sticks = sticking(rows, axis))
+    for (std::size_t i = begin, end = list.size(); i < end; ++i) list.push_back(with_spikes(rows, *sticks, list[i]));
 }
 
 /// Adds differences between the axes' loops. A lag reduces the radius, a delay does not.
@@ -334,6 +370,15 @@ std::vector<Unseen> unseen_causes(const CircleRows& rows) {
   } else if (!has_both_directions(rows.passes())) {
     list.push_back({"lateral_play", "it differs by direction: record the circle clockwise and counter-clockwise"});
   }
+  double slow = HUGE_VAL;
+  for (const CirclePass& pass : rows.passes()) slow = std::min(slow, stick_slip_speed(pass));
+  const bool sticks = std::ranges::any_of(
+      rows.passes(), [](const CirclePass& pass) { return std::ranges::any_of(pass.rests, &AxisRests::jumps); });
+  if (slow > kStickSlip_mm_s && !sticks)
+    list.push_back({"stick_slip",
+                    "at these feeds an axis rests once at its reversal, which is a reversal spike: record "
+                    "a circle at a feed lower by a factor of " +
+                        std::to_string(static_cast<int>(std::ceil(slow / kStickSlip_mm_s)))});
   list.push_back(
       {"screw_pitch", "on a circle it looks like straightness and scale errors: measure positions along one axis"});
   if (!(most(rows.passes(), lag_angle_of) > kLeastLagAngle))
@@ -355,6 +400,10 @@ CauseText cause_text(const std::string& kind) {
       {"reversal_spike",
        {"Friction holds the axis after a reversal: an outward spike at the quadrants",
         "axistool friction, then design: friction feed-forward; where it is on, axistool diagnose"}},
+      {"stick_slip",
+       {"The axis rests by static friction and jumps when its loop overcomes it: steps beside the quadrants at low "
+        "speed",
+        "oil, gibs and wipers; then a stiffer loop shortens the steps: axistool bode, design --notch auto"}},
       {"squareness",
        {"The axes are not square: an ellipse at 45 degrees, the same in both directions", "align the axes"}},
       {"scale_mismatch",

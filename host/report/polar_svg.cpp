@@ -15,7 +15,7 @@ namespace host::html {
 
 namespace {
 
-constexpr double kSize = 560.0, kCentre = kSize / 2.0;  // size of the picture, in its own units
+constexpr double kSize = 600.0, kCentre = kSize / 2.0;  // size of the picture, in its own units
 constexpr double kCircle = 160.0, kRing = 22.0;         // radius of the nominal circle; distance of two rings
 constexpr int kMostRings = 4;
 constexpr std::size_t kMostPoints = 4000;
@@ -62,7 +62,23 @@ std::string rings(double step_um, int count) {
   return svg;
 }
 
-std::string trace_line(const PolarTrace& trace, double step_um) {
+/// Lines of one colour differ by their dashes: drawn and left out, in units of the picture; the first is solid.
+constexpr std::array<std::array<int, 2>, 3> kDashes = {{{1, 0}, {6, 4}, {2, 3}}};
+
+const std::array<int, 2>& dash_of(const PolarPlot& plot, std::size_t at) {
+  const auto before = std::count_if(plot.traces.begin(), plot.traces.begin() + static_cast<std::ptrdiff_t>(at),
+                                    [&](const PolarTrace& one) { return one.role == plot.traces[at].role; });
+  return kDashes[static_cast<std::size_t>(before) % kDashes.size()];
+}
+
+std::string swatch(SeriesRole role, const std::array<int, 2>& dash) {
+  return fmt::format(
+      "<i class=\"swatch\" style=\"background:repeating-linear-gradient(90deg,{0} 0 {1}px,transparent {1}px "
+      "{2}px)\"></i>",
+      series_colour(role), dash[0], dash[0] + dash[1]);
+}
+
+std::string trace_line(const PolarTrace& trace, double step_um, const std::array<int, 2>& dash) {
   std::string path;
   const std::size_t stride = 1 + trace.angle_rad.size() / kMostPoints;
   bool pen_down = false;
@@ -76,7 +92,8 @@ std::string trace_line(const PolarTrace& trace, double step_um) {
                    kCentre + radius * std::cos(trace.angle_rad[k]), kCentre - radius * std::sin(trace.angle_rad[k]));
     pen_down = true;
   }
-  return fmt::format("<path class=\"trace\" style=\"stroke:{}\" d=\"{}\"/>\n", series_colour(trace.role), path);
+  return fmt::format("<path class=\"trace\" style=\"stroke:{};stroke-dasharray:{} {}\" d=\"{}\"/>\n",
+                     series_colour(trace.role), dash[0], dash[1], path);
 }
 
 /// "before: −12.3 to 4.1 µm".
@@ -93,12 +110,12 @@ std::string polar_plot(const PolarPlot& plot) {
   const int count = std::max(1, static_cast<int>(std::ceil(largest / step_um)));
   const double magnification = (kRing / step_um) / (kCircle / (1e3 * plot.radius_mm));
   std::string legend, spoken, traces;
-  for (const PolarTrace& trace : plot.traces) {
+  for (std::size_t i = 0; i < plot.traces.size(); ++i) {
+    const PolarTrace& trace = plot.traces[i];
     const std::string text = escape_html(span_of(trace));
-    legend +=
-        fmt::format("<span><i class=\"swatch\" style=\"background:{}\"></i>{}</span>", series_colour(trace.role), text);
+    legend += fmt::format("<span>{}{}</span>", swatch(trace.role, dash_of(plot, i)), text);
     spoken += "; " + text;
-    traces += trace_line(trace, step_um);
+    traces += trace_line(trace, step_um, dash_of(plot, i));
   }
   return fmt::format(
       "<figure class=\"polar half\">\n<figcaption><strong>{}</strong><span>{} Radial deviations drawn {} times larger "

@@ -82,8 +82,35 @@ TEST_F(Circle, ABallbarShowsThatAxesAreNotSquare) {
 TEST_F(Circle, EncodersAloneNameNoGeometry) {
   const json found = circle(made("ccw.csv", 1.0, 9.0, false) + " " + made("cw.csv", -1.0, 9.0, false));
   EXPECT_TRUE(found["causes"].empty()) << found.dump(2);
-  for (const char* kind : {"squareness", "scale_mismatch", "coupling", "backlash", "lateral_play", "straightness"})
+  for (const char* kind :
+       {"squareness", "scale_mismatch", "coupling", "backlash", "lateral_play", "straightness", "stick_slip"})
     EXPECT_THAT(found["cannot_see"], Contains(kind));
+}
+
+/// A slow circle whose axis y rests below 0.8 mm/s until the circle is 15 um ahead, and then jumps to it.
+TEST_F(Circle, AnAxisThatSticksIsTold) {
+  std::string files;
+  for (const double direction : {1.0, -1.0}) {
+    std::string text =
+        "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.001\nt_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm\n";
+    double rest = 0.0;
+    for (int k = 0; k < 34000; ++k) {
+      // The reversals are not at an edge between two encoder steps.
+      const double angle = direction * 0.2 * 0.001 * k;
+      const double x = 0.0003 + 20.0 * std::cos(angle), y = 0.0004 + 20.0 * std::sin(angle);
+      if (std::abs(y - rest) > 0.015 || std::abs(4.0 * std::cos(angle)) > 0.8) rest = y;
+      text += std::to_string(0.001 * k) + ",0." + std::to_string(k % 7) + "," +
+              std::to_string(std::floor(x * 1e3) / 1e3) + "," + std::to_string(x) + "," +
+              std::to_string(std::floor(rest * 1e3) / 1e3) + "," + std::to_string(y) + "\n";
+    }
+    files += folder_.write(direction > 0.0 ? "ccw.csv" : "cw.csv", text) + " ";
+  }
+  const json found = circle(files);
+  ASSERT_EQ(found["causes"].size(), 1u) << found.dump(2);
+  EXPECT_EQ(found["causes"][0]["kind"], "stick_slip");
+  EXPECT_EQ(found["causes"][0]["axis"], "y");
+  EXPECT_NEAR(found["causes"][0]["um"], 30.0, 3.0);  // lag of 15 um towards either end
+  EXPECT_THAT(found["cannot_see"], Not(Contains("stick_slip")));
 }
 
 /// The shipped ballbar scenario with other errors of the table, or its own.
