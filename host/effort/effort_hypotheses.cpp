@@ -354,22 +354,22 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       kinds[k].fitted.push_back({log_odds, 1.0, ranked.front().form->term()});
     }
   std::erase_if(kinds, [](const Kind& kind) { return kind.fitted.empty(); });
-  std::vector<double> logs{std::log(kNothingMore)};
+  found.log_nothing = std::log(kNothingMore);
   for (Kind& kind : kinds) {
-    std::ranges::stable_sort(kind.fitted, std::greater(), &Fitted::log_odds);
-    logs.push_back(kind.fitted.front().log_odds + std::log((1.0 - kNothingMore) / static_cast<double>(forms.size())));
-  }
-  const std::vector<double> probabilities = posterior(logs);
-  found.nothing = probabilities.front();
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    std::vector<Fitted>& fitted = kinds[k].fitted;
-    NextEffect effect{std::move(fitted.front().term), {}, fitted.front().log_odds, probabilities[k + 1]};
+    std::vector<Fitted>& fitted = kind.fitted;
+    std::ranges::stable_sort(fitted, std::greater(), &Fitted::log_odds);
+    const double log_odds = fitted.front().log_odds;
+    NextEffect effect{.term = std::move(fitted.front().term),
+                      .others = {},
+                      .log_odds = log_odds,
+                      .log_weight = log_odds + std::log((1.0 - kNothingMore) / static_cast<double>(forms.size()))};
     std::ranges::stable_sort(fitted.begin() + 1, fitted.end(), {}, &Fitted::train);
     if (effect.term.neighbours)
       for (std::size_t other = 1; other < std::min(fitted.size(), kStarts); ++other)
         effect.others.push_back(std::move(fitted[other].term));
     found.effects.push_back(std::move(effect));
   }
+  renew_probabilities(found);
   // Rounding errors must not decide between effects that are identical in these rows.
   std::ranges::sort(found.effects, {}, [](const NextEffect& effect) {
     constexpr double kSame = 1e-3;  // nats

@@ -8,6 +8,14 @@
 
 namespace host {
 
+void renew_probabilities(NextEffects& next) {
+  std::vector<double> logs{next.log_nothing};
+  for (const NextEffect& effect : next.effects) logs.push_back(effect.log_weight);
+  const std::vector<double> probabilities = posterior(logs);
+  next.nothing = probabilities.front();
+  for (std::size_t k = 0; k < next.effects.size(); ++k) next.effects[k].probability = probabilities[k + 1];
+}
+
 std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
   std::vector<std::string> group;
   probability = 0.0;
@@ -21,18 +29,17 @@ std::vector<std::string> certain_group(const NextEffects& next, double& probabil
 }
 
 void leave_unnamed(NextEffects& next) {
+  std::vector<double> logs{next.log_nothing};
   for (const NextEffect& effect : next.effects)
-    if (effect.term.kind == kNoName) next.nothing += effect.probability;
-  std::erase_if(next.effects, [](const NextEffect& effect) { return effect.term.kind == kNoName; });
+    if (effect.term.kind == kNoName) logs.push_back(effect.log_weight);
+  next.log_nothing = log_sum(logs);
+  take_out(next, {kNoName});
 }
 
 void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
   std::erase_if(next.effects,
                 [&](const NextEffect& effect) { return std::ranges::find(kinds, effect.term.kind) != kinds.end(); });
-  double sum = next.nothing;
-  for (const NextEffect& effect : next.effects) sum += effect.probability;
-  next.nothing = sum > 0.0 ? next.nothing / sum : 1.0;
-  for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
+  renew_probabilities(next);
 }
 
 void leave_nothing(NextEffects& next) {
@@ -41,16 +48,18 @@ void leave_nothing(NextEffects& next) {
 }
 
 void give_place(NextEffects& next, const std::string& kind, NextEffect to) {
-  to.probability = 0.0;
+  std::vector<double> logs;
   for (const NextEffect& effect : next.effects)
     if (effect.term.kind == kind || effect.term.kind == to.term.kind) {
-      to.probability += effect.probability;
+      logs.push_back(effect.log_weight);
       to.log_odds = std::max(to.log_odds, effect.log_odds);
     }
+  to.log_weight = log_sum(logs);
   std::erase_if(next.effects,
                 [&](const NextEffect& effect) { return effect.term.kind == kind || effect.term.kind == to.term.kind; });
   next.effects.push_back(std::move(to));
-  std::ranges::stable_sort(next.effects, std::greater(), &NextEffect::probability);
+  renew_probabilities(next);
+  std::ranges::stable_sort(next.effects, std::greater(), &NextEffect::log_weight);
 }
 
 NextEffect& effect_of(NextEffects& next, const std::string& kind) {

@@ -17,15 +17,20 @@ struct NextEffect {
   EffortTerm term;
   std::vector<EffortTerm> others;  ///< further forms from which a refinement starts; may be empty
   double log_odds = 0.0;           ///< log odds over no further effect, nats, integrated over forms and sizes
+  double log_weight = 0.0;         ///< the same plus the log of the prior of its kind
   double probability = 0.0;        ///< probability compared with all kinds and no further effect
 };
 
 /// Candidates for the next effect, most probable first.
 struct NextEffects {
   std::vector<NextEffect> effects;
-  double nothing = 1.0;  ///< probability that no effect of the catalogue is missing
-  EvidenceFit fit;       ///< the fit without a further effect
+  double nothing = 1.0;      ///< probability that no effect of the catalogue is missing
+  double log_nothing = 0.0;  ///< log of its prior
+  EvidenceFit fit;           ///< the fit without a further effect
 };
+
+/// Sets the probabilities from the logs, in which odds of thousands of nats do not vanish.
+void renew_probabilities(NextEffects& next);
 
 /// The smallest set of kinds of which one is certain, most probable first. Empty if no further effect is more probable
 /// than one of them, or if the set is too large. `probability`: receives that of the group.
