@@ -154,15 +154,14 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
 
 EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
                                double give_up) const {
-  EvidenceStart start{.colour = before.colour,
-                      .sizes = before.sizes,
-                      .weights = before.weights,
-                      .noise = before.noise,
-                      .give_up = give_up};
+  // The weights begin equal: those of `before` would leave out the rows in which only a further column acts.
+  EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
   const VectorXd none = no_memory();
   if ((before.sizes.array() <= none.array()).all()) return same;
   start.sizes = none;
+  start.weights = same.weights;
+  start.noise = same.noise;
   EvidenceFit small = fit(columns, deviations, start);
   return same.log_evidence > small.log_evidence ? same : small;
 }
