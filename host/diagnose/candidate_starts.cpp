@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 #include <string_view>
 
 #include "host/compare/effort_residual.hpp"
@@ -145,6 +147,27 @@ bool shows_in_speed(const sim::EffectInfo& info, const RecordSet& set) {
          (info.stage == sim::Stage::encoder && std::ranges::any_of(set.records, has_speed));
 }
 
+/// Divides the samples by their RMS in each tenth of the speeds, so that those at which the noise is small count most:
+/// a fine wave shows in the torque at low speed, and in fast motion the noise of the acceleration covers it.
+void divide_by_noise(TravelSignal& signal, const std::vector<double>& speed) {
+  constexpr std::size_t kParts = 10;
+  std::vector<std::size_t> order(speed.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t k) { return speed[k]; });
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::span samples = std::span(order).subspan(
+        part * order.size() / kParts, (part + 1) * order.size() / kParts - part * order.size() / kParts);
+    double square = 0.0;
+    for (const std::size_t k : samples) square += signal.value[k] * signal.value[k];
+    if (!(square > 0.0)) continue;
+    const double noise = std::sqrt(square / static_cast<double>(samples.size()));
+    for (const std::size_t k : samples) {
+      signal.value[k] /= noise;
+      signal.weight[k] /= noise;
+    }
+  }
+}
+
 /// The signal over the travel in which a periodic effect shows, and the weight of its harmonic in this signal.
 TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
   // Some 50,000 samples are plenty for a spectrum.
@@ -153,6 +176,7 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
   for (const ComparedRecord& compared : set.records) rows += compared.prepared.u_V.size();
   const bool in_speed = shows_in_speed(info, set);
   TravelSignal signal;
+  std::vector<double> speed;
   for (const ComparedRecord& compared : set.records) {
     const ResidualSamples samples =
         residual_samples(model, compared.prepared, std::max<std::size_t>(1, rows / kSamples));
@@ -165,11 +189,13 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
         value = samples.tach_error[k];
         weight = samples.w[k];
       }
+      speed.push_back(std::abs(samples.w[k]));
       signal.x.push_back(samples.x[k]);
       signal.value.push_back(value);
       signal.weight.push_back(weight);
     }
   }
+  divide_by_noise(signal, speed);
   return signal;
 }
 
