@@ -95,10 +95,6 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   fit.colour = start.colour;
   VectorXd unit_weights = VectorXd::Ones(n), factors;
   double square = -1.0, before = -HUGE_VAL;
-  if (start.weights.size() == n) {
-    square = start.noise * start.noise;
-    unit_weights = start.weights * square;
-  }
   MatrixXd gram;
   VectorXd white_y, deviations_now;
   MatrixXd white;
@@ -154,14 +150,11 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
 
 EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
                                double give_up) const {
-  // The weights begin equal: those of `before` would leave out the rows in which only a further column acts.
   EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
   const VectorXd none = no_memory();
   if ((before.sizes.array() <= none.array()).all()) return same;
   start.sizes = none;
-  start.weights = same.weights;
-  start.noise = same.noise;
   EvidenceFit small = fit(columns, deviations, start);
   return same.log_evidence > small.log_evidence ? same : small;
 }

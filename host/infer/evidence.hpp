@@ -56,9 +56,7 @@ struct EvidenceFit {
 struct EvidenceStart {
   NoiseColour colour = {.drift = 0.5};
   Eigen::VectorXd sizes;
-  Eigen::VectorXd weights = {};  ///< weights of the whitened rows, 1/variance; empty: equal
-  double noise = 0.0;            ///< scale of the innovations to which the weights belong, in the unit of y
-  bool hold_sizes = false;       ///< true if the sizes stay fixed
+  bool hold_sizes = false;  ///< true if the sizes stay fixed
   /// Log evidence, nats. A fit ends if it is below this after three rounds and further rounds change little.
   double give_up = -HUGE_VAL;
 };
