@@ -155,8 +155,8 @@ void divide_by_noise(TravelSignal& signal, const std::vector<double>& speed) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t k) { return speed[k]; });
   for (std::size_t part = 0; part < kParts; ++part) {
-    const std::span samples = std::span(order).subspan(
-        part * order.size() / kParts, (part + 1) * order.size() / kParts - part * order.size() / kParts);
+    const std::size_t from = part * order.size() / kParts, to = (part + 1) * order.size() / kParts;
+    const std::span samples = std::span(order).subspan(from, to - from);
     double square = 0.0;
     for (const std::size_t k : samples) square += signal.value[k] * signal.value[k];
     if (!(square > 0.0)) continue;

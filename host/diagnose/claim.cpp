@@ -63,7 +63,6 @@ bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double 
 }
 
 double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more) {
-  // A set at its noise floor has nothing left to explain, even if a further effect lowers its error.
   const auto above_noise = [](const JudgedCandidate& candidate) {
     return std::sqrt(std::max(candidate.train_after, kComplete) * std::max(candidate.after, kComplete));
   };

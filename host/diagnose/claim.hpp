@@ -37,7 +37,7 @@ double level_of_both(const SetLevels& level);
 /// Whether one candidate has the lower level, and the lower level or combined error by more than `share`.
 bool is_better(const JudgedCandidate& one, const JudgedCandidate& other, double share);
 
-/// explained_share() of what one candidate leaves by another, on both sets.
+/// explained_share() of what one candidate leaves by another, on both sets. A set at its noise floor has nothing left.
 double explained_beyond(const JudgedCandidate& less, const JudgedCandidate& more);
 
 /// Number of parameters that a candidate adds to the base.

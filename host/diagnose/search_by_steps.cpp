@@ -253,20 +253,19 @@ void add_exchanged(std::vector<Candidate>& candidates, const std::vector<Candida
   std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
 }
 
-/// The candidates to which a further effect is added: the best physical one and, if it is another, the best of those
-/// whose last effect the force balance holds to be present beside the others. An effect that the balance cannot show,
-/// such as a gain of the tachometer, may explain more of the motion than the effect that the balance shows, and then
-/// takes the base to where that one cannot be found.
-std::vector<Candidate> to_be_extended(const std::vector<Candidate>& candidates, const PreparedSets& sets,
+/// The single effects to which a further one is added: the best physical one and, if it is another, the best of those
+/// that the force balance holds to be present. An effect that the balance cannot show, such as a gain of the
+/// tachometer, may explain more of the motion than the effect that the balance shows, and then takes the base to where
+/// that one cannot be found.
+std::vector<Candidate> to_be_extended(const std::vector<Candidate>& singles, const PreparedSets& sets,
                                       const EffortScreen* balance) {
+  std::vector<std::string> probable;
+  if (balance != nullptr) probable = probable_kinds(*balance, {});
   std::vector<Candidate> leaders;
-  for (const Candidate& candidate : candidates) {
-    if (!is_physical(candidate, sets)) continue;
-    const std::vector<std::string> others(candidate.kinds.begin(), candidate.kinds.end() - 1);
-    const std::vector<std::string> probable =
-        balance == nullptr ? std::vector<std::string>{} : probable_kinds(*balance, others);
-    const bool is_probable = std::ranges::find(probable, candidate.kinds.back()) != probable.end();
-    if (leaders.empty() || is_probable) leaders.push_back(candidate);
+  for (const Candidate& single : singles) {
+    if (!is_physical(single, sets)) continue;
+    const bool is_probable = std::ranges::find(probable, single.kinds.back()) != probable.end();
+    if (leaders.empty() || is_probable) leaders.push_back(single);
     if (is_probable) break;
   }
   return leaders;
@@ -305,8 +304,11 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     if (!is_physical(candidate, sets)) excluded.push_back(candidate.kinds.back());
   const std::vector<Candidate> leaders = to_be_extended(found.singles, sets, effort.balance);
   if (leaders.empty() || Errors(leaders.front().model, sets).validation <= kExplained) return found;
-  for (const Candidate& single : leaders)
-    std::ranges::move(search(single.model, single.kinds, 0.5, 0.8), std::back_inserter(found.pairs));
+  const double share = 0.3 / static_cast<double>(leaders.size());
+  for (double from = 0.5; const Candidate& single : leaders) {
+    std::ranges::move(search(single.model, single.kinds, from, from + share), std::back_inserter(found.pairs));
+    from += share;
+  }
   keep_best_of_each(found.pairs);
   const auto pair = std::ranges::find_if(found.pairs, physical);
   if (pair == found.pairs.end()) return found;

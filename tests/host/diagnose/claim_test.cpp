@@ -49,6 +49,11 @@ TEST(Claim, ACompleteModelLeavesNothingToExplain) {
   EXPECT_EQ(host::reservation_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Reservation::no_gain);
 }
 
+TEST(Claim, ASetAtItsNoiseFloorHasNothingLeftForAFurtherEffect) {
+  EXPECT_NEAR(host::explained_beyond(candidate(14.0, 2.0, 0.93), candidate(14.0, 1.9, 0.77)), 0.1, 1e-9);
+  EXPECT_NEAR(host::explained_beyond(candidate(14.0, 2.0, 2.0), candidate(14.0, 1.0, 1.0)), 1.0, 1e-9);
+}
+
 TEST(Claim, WhatLowersOneSetOnlyIsNoFinding) {
   EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 20.5), diagnosis(20.0, 12.0)), Reservation::no_gain);
   EXPECT_EQ(host::reservation_about(candidate(12.0, 12.5, 1.0), diagnosis(20.0, 12.0)), Reservation::no_gain);
