@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "host/infer/posterior.hpp"
-#include "sim/drive.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -59,11 +59,12 @@ bool are_told_apart(const EffortScreen& balance, const std::vector<std::string>&
 }
 
 bool allows_second_mass(const EffortScreen& balance, const std::vector<std::string>& kinds) {
-  if (balance.steps.empty() || balance.rows.steady) return true;
-  std::vector<const ScreenedModel*> tried = tried_beside(balance, kinds);
-  if (tried.empty()) tried = tried_beside(balance, {});
-  return std::ranges::any_of(
-      tried, [](const ScreenedModel* one) { return one->log_odds > 0.0 && sim::Drive(one->model).has_second_mass(); });
+  for (const std::vector<std::string>& beside : {kinds, {}}) {
+    std::vector<const ScreenedModel*> tried = tried_beside(balance, beside);
+    std::erase_if(tried, [](const ScreenedModel* one) { return !sim::is_second_mass(one->kinds.back()); });
+    if (!tried.empty()) return std::ranges::any_of(tried, [](const ScreenedModel* one) { return one->log_odds > 0.0; });
+  }
+  return true;
 }
 
 std::optional<sim::DriveDescription> balanced_start(const EffortScreen& balance, std::vector<std::string> kinds,

@@ -19,8 +19,8 @@ std::vector<std::string> probable_kinds(const EffortScreen& balance, const std::
 bool are_told_apart(const EffortScreen& balance, const std::vector<std::string>& kinds, std::string_view leader,
                     std::string_view other);
 
-/// Whether the force balance found a second mass more probable than no further effect beside `kinds` (or, if it did not
-/// try these, beside the base). True if it cannot show a second mass, because the speed hardly changes.
+/// Whether the force balance found a second mass more probable than no further effect beside `kinds`; or beside the
+/// base, if it has no odds of a second mass beside `kinds`. True if it has none there either.
 bool allows_second_mass(const EffortScreen& balance, const std::vector<std::string>& kinds);
 
 /// The model of the force balance with `kinds` and this effect as the last one; empty if it did not try them. Its base

@@ -58,9 +58,13 @@ TEST(ForceBalanceOdds, ASecondMassIsPossibleWhereItIsMoreProbableThanNothing) {
   EXPECT_FALSE(host::allows_second_mass(balance(), {}));
   EXPECT_TRUE(host::allows_second_mass(balance(), {"constant_torque"}));
   EXPECT_FALSE(host::allows_second_mass(balance(), {"tach_lag"})) << "then the odds beside the base count";
-  host::EffortScreen steady = balance();
-  steady.rows.steady = true;
-  EXPECT_TRUE(host::allows_second_mass(steady, {})) << "at constant speed a second mass does not show";
+  host::EffortScreen unlisted = balance();
+  std::erase_if(unlisted.steps[1], [](const auto& one) { return one.kinds.back() == "compliance"; });
+  EXPECT_FALSE(host::allows_second_mass(unlisted, {"constant_torque"}));
+  unlisted.steps[0].front().log_odds = 3.0;
+  EXPECT_TRUE(host::allows_second_mass(unlisted, {"constant_torque"})) << "an effect without odds has none against it";
+  unlisted.steps[0].erase(unlisted.steps[0].begin());
+  EXPECT_TRUE(host::allows_second_mass(unlisted, {}));
   EXPECT_TRUE(host::allows_second_mass({}, {}));
 }
 
