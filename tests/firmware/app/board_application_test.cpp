@@ -141,24 +141,24 @@ TYPED_TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
 /// A changed gain, threshold, friction curve, board limit or value is found while the axis is enabled. Only a restart
 /// clears the fault.
 TYPED_TEST(BoardParameters, ThatChangeByThemselvesStopTheBoard) {
-  using Bench = typename TestFixture::Bench;
+  using TestedBoard = typename TestFixture::Bench;
   const auto flip = [](const auto& setting, std::size_t byte) {
     const_cast<std::byte*>(std::as_bytes(std::span(&setting, 1)).data())[byte] ^= std::byte{4};
   };
-  const std::function<void(Bench&)> changes[] = {
-      [&](Bench& b) { flip(b.application.axes()[0].parameters().Kc[0], 1); },
-      [&](Bench& b) { flip(b.application.axes()[0].monitors().limits().overspeed, 0); },
-      [&](Bench& b) {
+  const std::function<void(TestedBoard&)> changes[] = {
+      [&](TestedBoard& b) { flip(b.application.axes()[0].parameters().Kc[0], 1); },
+      [&](TestedBoard& b) { flip(b.application.axes()[0].monitors().limits().overspeed, 0); },
+      [&](TestedBoard& b) {
         b.application.axes()[0].law().each_setting([&](const auto& setting) {
           if constexpr (sizeof setting > 1000) flip(setting, sizeof setting - 1);
         });
       },
-      [&](Bench& b) { flip(b.application.axes().board().limits().standing_samples, 0); },
-      [&](Bench& b) { flip(b.application.active(), sizeof(ParameterValues) / 4); },
-      [&](Bench& b) { flip(b.application.axes()[TestFixture::kAxes - 1].parameters().Kobs[0][0], 3); },
+      [&](TestedBoard& b) { flip(b.application.axes().board().limits().standing_samples, 0); },
+      [&](TestedBoard& b) { flip(b.application.active(), sizeof(ParameterValues) / 4); },
+      [&](TestedBoard& b) { flip(b.application.axes()[TestFixture::kAxes - 1].parameters().Kobs[0][0], 3); },
   };
   for (const auto& change : changes) {
-    Bench bench;
+    TestedBoard bench;
     bench.fit_and_enable_x();
     bench.run(2000);
     ASSERT_EQ(bench.application.axes()[0].fault(), firmware::AxisFault::none);

@@ -3,8 +3,8 @@
 
 #include <Eigen/Dense>
 #include <numbers>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "host/dense_solutions.hpp"
 #include "host/response/plant_fit.hpp"
 
 namespace {
@@ -22,7 +22,7 @@ std::complex<double> answer(double f_Hz, double lag_s, int samples_late) {
     held(2, 2) = -1.0 / lag_s;
     held(2, 3) = 1.0 / lag_s;
   }
-  const Eigen::Matrix4d sampled = (held * kPeriod_s).exp();
+  const Eigen::Matrix4d sampled = host::exponential(held * kPeriod_s);
   const std::complex<double> z = std::polar(1.0, 2.0 * std::numbers::pi * f_Hz * kPeriod_s);
   const Eigen::Matrix3cd rest = z * Eigen::Matrix3cd::Identity() - sampled.topLeftCorner<3, 3>();
   const Eigen::Vector3cd state = rest.partialPivLu().solve(sampled.topRightCorner<3, 1>().cast<std::complex<double>>());

@@ -1,6 +1,7 @@
 // The two-mass machine with a controller designed for one mass: records of it, and its exact open loop.
 #pragma once
 
+#include "host/dense_solutions.hpp"
 #include "host/identify/axis_design.hpp"
 #include "host/parameters/axis_parameters.hpp"
 #include "tests/host/response/two_mass_machine.hpp"
@@ -59,7 +60,7 @@ class ExactOpenLoop {
     Eigen::Matrix<double, 5, 5> held = Eigen::Matrix<double, 5, 5>::Zero();
     for (int i = 0; i < 4; ++i) held.block<4, 1>(0, i) = machine.derivative(Eigen::Vector4d::Unit(i), 0.0, false);
     held.block<4, 1>(0, 4) = machine.derivative(Eigen::Vector4d::Zero(), 1.0, false);
-    const Eigen::Matrix<double, 5, 5> sampled = (held * period_s_).exp();
+    const Eigen::Matrix<double, 5, 5> sampled = host::exponential(held * period_s_);
     Eigen::Matrix<double, 2, 4> seen = Eigen::Matrix<double, 2, 4>::Zero();
     seen(0, 2) = machine.lead;
     seen(1, 1) = 1.0;
@@ -97,7 +98,7 @@ class ExactOpenLoop {
   bool is_stable(double gain) const {
     Eigen::Matrix<double, 7, 7> closed = A_;
     closed.rightCols<3>() -= gain * B_ * feedback_;
-    return closed.eigenvalues().cwiseAbs().maxCoeff() < 1.0;
+    return host::eigenvalues(closed).cwiseAbs().maxCoeff() < 1.0;
   }
 
  private:

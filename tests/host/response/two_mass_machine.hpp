@@ -9,10 +9,10 @@
 #include <numbers>
 #include <random>
 #include <string>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "firmware/core/axis_parameters.hpp"
+#include "host/dense_solutions.hpp"
 #include "host/record/record.hpp"
 
 struct TwoMassMachine {
@@ -52,7 +52,7 @@ struct TwoMassMachine {
     Eigen::Matrix<double, 5, 5> held = Eigen::Matrix<double, 5, 5>::Zero();
     for (int i = 0; i < 4; ++i) held.block<4, 1>(0, i) = derivative(Eigen::Vector4d::Unit(i), 0.0, false);
     held.block<4, 1>(0, 4) = derivative(Eigen::Vector4d::Zero(), 1.0, false);
-    const Eigen::Matrix<double, 5, 5> sampled = (held * period_s).exp();
+    const Eigen::Matrix<double, 5, 5> sampled = host::exponential(held * period_s);
     const std::complex<double> z = std::polar(1.0, 2.0 * std::numbers::pi * f_Hz * period_s);
     const Eigen::Matrix4cd rest = z * Eigen::Matrix4cd::Identity() - sampled.topLeftCorner<4, 4>();
     const Eigen::Vector4cd state =
