@@ -240,7 +240,7 @@ void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
   list.push_back(with_amount(coupling, 1e3 / acceleration_mm_s2, "um/(m/s2)"));
   for (const char axis : {'x', 'y'}) {
     const std::string name{axis};
-    list.push_back(backlash_cause(rows, axis, 0.0));
+    list.push_back(backlash_cause(rows, axis, kUsual_um));
     const char other = axis == 'x' ? 'y' : 'x';
     list.push_back(outer("straightness", name, [=](const CirclePass& pass, std::size_t k) {
       return std::pow(radial_part(pass, k, axis), 2) * radial_part(pass, k, other);
@@ -314,16 +314,12 @@ std::vector<CircleCause> plain_causes(const CircleRows& rows) {
 }
 
 CircleCause backlash_cause(const CircleRows& rows, char axis, double gap_um) {
-  CircleRows::Signature signature = [axis](const CirclePass& pass, std::size_t k) {
-    return -0.5 * moving(pass, k, axis) * radial_part(pass, k, axis);
+  auto seats = std::make_shared<std::vector<std::vector<double>>>();
+  for (const CirclePass& pass : rows.passes()) seats->push_back(seats_in_gap(pass, axis, gap_um));
+  const CircleRows::Signature signature = [axis, seats, first = rows.passes().data()](const CirclePass& pass,
+                                                                                      std::size_t k) {
+    return (*seats)[static_cast<std::size_t>(&pass - first)][k] * radial_part(pass, k, axis);
   };
-  if (gap_um > 0.0) {
-    auto seats = std::make_shared<std::vector<std::vector<double>>>();
-    for (const CirclePass& pass : rows.passes()) seats->push_back(seats_in_gap(pass, axis, gap_um));
-    signature = [axis, seats, first = rows.passes().data()](const CirclePass& pass, std::size_t k) {
-      return (*seats)[static_cast<std::size_t>(&pass - first)][k] * radial_part(pass, k, axis);
-    };
-  }
   return cause(rows, "backlash", {axis}, {signature}, true);
 }
 

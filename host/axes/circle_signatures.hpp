@@ -78,8 +78,8 @@ enum class WaveKind { cyclic_error, torque_ripple, vibration };
 /// Causes that these sensors show: those without a nonlinear parameter, and reversal spikes with several decay times.
 std::vector<CircleCause> plain_causes(const CircleRows& rows);
 
-/// Lost motion between an axis's motor and the table. The table rests until the motor has crossed `gap_um`; with a gap
-/// of 0, or a negative one, it moves over at the reversal.
+/// Lost motion between an axis's motor and the table: the table rests until the motor, as its encoder shows it, has
+/// crossed the gap, > 0.
 CircleCause backlash_cause(const CircleRows& rows, char axis, double gap_um);
 
 /// A wave over the travel of an axis (value: its period, mm) or over time (frequency, Hz).
