@@ -219,9 +219,32 @@ class CircleSearch {
     return tried;
   }
 
-  /// Refines each wave's period or frequency together with all other causes.
+  /// Chooses the form of each axis' friction again. It was chosen with the noise of a fit without this friction, at
+  /// which forms with few columns win.
+  void reshape(Causes& causes, EvidenceFit& fit) const {
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (!is_friction(causes[i])) continue;
+      double best = fit.log_evidence + prior(causes);
+      for (const CircleCause& form : plain_) {
+        if (!is_same(form, causes[i])) continue;
+        Causes other = causes;
+        other[i] = form;
+        EvidenceFit tried =
+            bare_.fit(columns(other), deviations(other),
+                      {.colour = fit.colour, .sizes = bare_.no_memory(), .give_up = best - prior(other)});
+        if (tried.log_evidence + prior(other) <= best) continue;
+        best = tried.log_evidence + prior(other);
+        causes = other;
+        fit = std::move(tried);
+      }
+    }
+  }
+
+  /// Refines each wave's period or frequency, and the way through each gap, together with all other causes.
   void refine(Causes& causes, const EvidenceFit& fit) const {
     for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (const double gap_um = fit.factors(columns_before(causes, i)); causes[i].kind == "backlash" && gap_um > 0.0)
+        causes[i] = backlash_cause(rows_, causes[i].axis.front(), gap_um);
       if (!is_wave(causes[i])) continue;
       const VectorXd others =
           columns(causes) * fit.factors -
@@ -251,6 +274,7 @@ class CircleSearch {
       }
       if (!next) break;
       causes = *next;
+      reshape(causes, next_fit);
       refine(causes, next_fit);
       fit = bare_.fit(columns(causes), deviations(causes), {.colour = next_fit.colour, .sizes = bare_.no_memory()});
     }

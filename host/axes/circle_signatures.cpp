@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <set>
 
@@ -202,6 +203,19 @@ void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
         with_amount(cause(rows, "delay_between_axes", "xy", {late}, false, -std::log(9.0)), ms_per_um, "ms"));
 }
 
+/// Where the table is within a gap about the motor, as the encoder shows the motor's way: -0.5 to 0.5 of the gap.
+std::vector<double> seats_in_gap(const CirclePass& pass, char axis, double gap_um) {
+  std::vector<double> seats;
+  double seat_um = 0.0;
+  for (std::size_t k = 0; k < pass.t_s.size(); ++k) {
+    const double motor_um = (1e3 * pass.radius_mm + pass.encoder_um[k]) * radial_part(pass, k, axis);
+    if (k == 0) seat_um = motor_um - 0.5 * gap_um * moving(pass, k, axis);
+    seat_um = std::clamp(seat_um, motor_um - 0.5 * gap_um, motor_um + 0.5 * gap_um);
+    seats.push_back((seat_um - motor_um) / gap_um);
+  }
+  return seats;
+}
+
 /// Adds causes that only a sensor at the table shows.
 void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
   const double radius = most(rows.passes(), radius_of);
@@ -226,9 +240,7 @@ void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
   list.push_back(with_amount(coupling, 1e3 / acceleration_mm_s2, "um/(m/s2)"));
   for (const char axis : {'x', 'y'}) {
     const std::string name{axis};
-    list.push_back(outer("backlash", name, [axis](const CirclePass& pass, std::size_t k) {
-      return -0.5 * moving(pass, k, axis) * radial_part(pass, k, axis);
-    }));
+    list.push_back(backlash_cause(rows, axis, kUsual_um));
     const char other = axis == 'x' ? 'y' : 'x';
     list.push_back(outer("straightness", name, [=](const CirclePass& pass, std::size_t k) {
       return std::pow(radial_part(pass, k, axis), 2) * radial_part(pass, k, other);
@@ -301,6 +313,16 @@ std::vector<CircleCause> plain_causes(const CircleRows& rows) {
   return list;
 }
 
+CircleCause backlash_cause(const CircleRows& rows, char axis, double gap_um) {
+  auto seats = std::make_shared<std::vector<std::vector<double>>>();
+  for (const CirclePass& pass : rows.passes()) seats->push_back(seats_in_gap(pass, axis, gap_um));
+  const CircleRows::Signature signature = [axis, seats, first = rows.passes().data()](const CirclePass& pass,
+                                                                                      std::size_t k) {
+    return (*seats)[static_cast<std::size_t>(&pass - first)][k] * radial_part(pass, k, axis);
+  };
+  return cause(rows, "backlash", {axis}, {signature}, true);
+}
+
 bool shows_through(double frequency_Hz, double row_s) {
   constexpr double kLeast = 0.2;
   const double half = kPi * frequency_Hz * row_s;
@@ -312,13 +334,15 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
   using Wave = double (*)(double);
   const Wave waves[] = {[](double a) { return std::cos(a); }, [](double a) { return std::sin(a); }};
   std::vector<CircleRows::Signature> signatures;
+  std::vector<bool> is_hidden;
   if (kind == WaveKind::vibration) {
     for (std::size_t i = 0; i < rows.passes().size(); ++i)
-      for (const Wave wave : waves)
-        if (shows_through(value, rows.row_s(i)))
-          signatures.emplace_back([=, own = &rows.passes()[i]](const CirclePass& pass, std::size_t k) {
-            return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
-          });
+      for (const Wave wave : waves) {
+        signatures.emplace_back([=, own = &rows.passes()[i]](const CirclePass& pass, std::size_t k) {
+          return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
+        });
+        is_hidden.push_back(!shows_through(value, rows.row_s(i)));
+      }
   } else {
     // The loop's response to a torque, as a series in j times the frequency, which is proportional to the axis's speed.
     const double top = most(rows.passes(), feed_of);
@@ -336,6 +360,9 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
                                                        : "vibration";
   CircleCause made = cause(rows, name, {axis}, signatures, kind == WaveKind::cyclic_error, -std::log(kPlaces));
   (kind == WaveKind::vibration ? made.frequency_Hz : made.period_mm) = value;
+  // Rows that hardly show the wave still contain a part of it, as an alias; its size comes from the other passes.
+  for (std::size_t i = 0; i < is_hidden.size(); ++i)
+    if (is_hidden[i]) made.signatures[i] = [](const CirclePass&, std::size_t) { return 0.0; };
   return made;
 }
 

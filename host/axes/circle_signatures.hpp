@@ -78,6 +78,10 @@ enum class WaveKind { cyclic_error, torque_ripple, vibration };
 /// Causes that these sensors show: those without a nonlinear parameter, and reversal spikes with several decay times.
 std::vector<CircleCause> plain_causes(const CircleRows& rows);
 
+/// Lost motion between an axis's motor and the table: the table rests until the motor, as its encoder shows it, has
+/// crossed the gap, > 0.
+CircleCause backlash_cause(const CircleRows& rows, char axis, double gap_um);
+
 /// A wave over the travel of an axis (value: its period, mm) or over time (frequency, Hz).
 CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value);
 

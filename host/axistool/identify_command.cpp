@@ -79,7 +79,7 @@ void write_report(const IdentifyArguments& arguments, const sim::DriveDescriptio
   for (const std::string& path : arguments.records) records.push_back(host::read_record(path));
   const std::string& name = arguments.output.empty() ? model.name : arguments.output;
   const host::ComparedModel fit =
-      host::compare_with(name, model, std::move(records), host::kWindow_s, arguments.accepted);
+      host::compare_with(name, model, std::move(records), arguments.window_s, arguments.accepted);
   host::comparison_report({&fit, 1}).write(arguments.report);
 }
 
@@ -152,9 +152,10 @@ void add_identify(CLI::App& app) {
           "the motion that the model predicts over --window")
       ->check(CLI::IsMember({"control", "prediction"}))
       ->capture_default_str();
-  command->add_option("--window", arguments->window_s, "length of the predictions of --for prediction, s")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
+  const CLI::Option* const window =
+      command->add_option("--window", arguments->window_s, "length of the predictions of --for prediction, s")
+          ->check(CLI::Range(0.01, 100.0))
+          ->capture_default_str();
   command
       ->add_option(
           "--gain", arguments->gain,
@@ -195,8 +196,11 @@ void add_identify(CLI::App& app) {
       "durations.\n"
       "Intervals hold for coloured residuals (block sums with Student's t). Exit code 8: the axis did not move "
       "enough.");
-  command->callback(
-      [arguments] { with_log_of_failure(arguments->json, "axis-identification/1", [&] { run(*arguments); }); });
+  command->callback([arguments, window] {
+    if (window->count() > 0 && arguments->purpose != "prediction")
+      throw host::Failure(host::ExitCode::usage, "--window needs --for prediction: the fit for control has no window");
+    with_log_of_failure(arguments->json, "axis-identification/1", [&] { run(*arguments); });
+  });
 }
 
 }  // namespace axistool

@@ -71,9 +71,10 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
   return document;
 }
 
+using Drives = std::vector<std::optional<sim::DriveDescription>>;
+
 /// The drive of each axis: from its model, else from the parameters.
-std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& arguments,
-                                                            const firmware::ParameterValues& values, std::size_t axes) {
+Drives drives_of(const RunArguments& arguments, const firmware::ParameterValues& values, std::size_t axes) {
   if (arguments.models.size() > axes)
     throw Failure(ExitCode::usage, fmt::format("--model: {} models for {} axes; give them in the order of the axes",
                                                arguments.models.size(), axes));
@@ -82,7 +83,7 @@ std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& 
                   fmt::format("a record of {} axes has room for {} process forces: give --capture with "
                               "fewer models",
                               axes, host::most_path_forces(axes)));
-  std::vector<std::optional<sim::DriveDescription>> drives;
+  Drives drives;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     if (axis >= arguments.models.size()) {
       drives.push_back(host::drive_of_parameters(values.axis(axis), firmware::kAxisNames.at(axis)));
@@ -95,13 +96,19 @@ std::vector<std::optional<sim::DriveDescription>> drives_of(const RunArguments& 
   return drives;
 }
 
-void say_commands(const std::vector<host::CommandNeed>& needs) {
+void say_commands(const std::vector<host::CommandNeed>& needs, const Drives& drives) {
   for (const host::CommandNeed& need : needs)
     fmt::print(
         "{} needs at most {:.2f} V of {:.2f} V ({:.0f} %): line {}, {:.3f} s, at {:.3f} mm with {:.4g} mm/s and "
         "{:.4g} mm/s^2\n",
         need.axis, need.command_V, need.limit_V, 100.0 * need.share(), need.line, need.time_s, need.position_mm,
         need.speed_mm_s, need.acceleration_mm_s2);
+  for (std::size_t axis = 0; axis < drives.size(); ++axis)
+    if (!drives[axis])
+      fmt::print(
+          "the command that {} needs is unknown: the parameters contain no model of it (`axistool design` writes "
+          "one); --model gives one\n",
+          firmware::kAxisNames.at(axis));
 }
 
 /// Throws if an axis cannot follow.
@@ -226,10 +233,10 @@ void run(const RunArguments& arguments) {
   if (talks(arguments))
     fmt::print("{}: {} lines, {:.2f} s, {}\n", arguments.file, planned.program.lines, planned.path.duration_s(),
                box_text(extents, axes));
-  const std::vector<host::CommandNeed> needs =
-      host::largest_commands(planned.path, machine.scale, drives_of(arguments, values, axes));
+  const Drives drives = drives_of(arguments, values, axes);
+  const std::vector<host::CommandNeed> needs = host::largest_commands(planned.path, machine.scale, drives);
   document["commands"] = host::commands_json(needs);
-  if (talks(arguments)) say_commands(needs);
+  if (talks(arguments)) say_commands(needs, drives);
   if (arguments.dry_run) {
     document["stopped_because"] = "dry run";
     if (!arguments.json.empty()) write_json(document, arguments.json);

@@ -67,6 +67,28 @@ AffineFit affine_fit(const std::vector<double>& of, const std::vector<double>& b
   return fit;
 }
 
+/// Whether a channel differs from another one times a factor by more than the rounding of both when they were written:
+/// in rows in which the other one has the same value, or by more than the smallest steps of both.
+bool exceeds_rounding(const std::vector<double>& of, const std::vector<double>& by, const AffineFit& fit) {
+  std::vector<std::pair<double, double>> rows;
+  for (std::size_t k = 0; k < of.size(); ++k) rows.emplace_back(by[k], of[k]);
+  std::ranges::sort(rows);
+  std::vector<double> sorted = of;
+  std::ranges::sort(sorted);
+  constexpr double kSameValue = 1e-9;  // of the range: rounding errors of the computation
+  const double range = sorted.back() - sorted.front(), same = kSameValue * range;
+  double step_of = range, step_by = range / std::abs(fit.factor);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    if (sorted[k] - sorted[k - 1] > same) step_of = std::min(step_of, sorted[k] - sorted[k - 1]);
+    const double step = rows[k].first - rows[k - 1].first;
+    if (step * std::abs(fit.factor) > same)
+      step_by = std::min(step_by, step);
+    else if (rows[k].second - rows[k - 1].second > same)
+      return true;
+  }
+  return fit.worst * range > step_of + step_by * std::abs(fit.factor) + same;
+}
+
 }  // namespace
 
 bool position_and_speed_swapped(const Record& record) {
@@ -91,6 +113,8 @@ std::optional<ScaledCopy> scaled_copy(const Record& record) {
       const bool tight = is_reference(channel) || is_reference(original);
       if (tight ? fit.worst > kSameExactly : fit.left > kSame) continue;
       const bool harmless = channel == &Record::u_V && original == &Record::i_A;
+      // An amplifier's measured current follows the command to a thousandth, too.
+      if (harmless && exceeds_rounding(record.*original, record.*channel, fit)) continue;
       return ScaledCopy{original, channel, fit.factor, harmless};
     }
   }

@@ -21,7 +21,8 @@ struct ScaledCopy {
 };
 
 /// The first channel that equals another one times a constant plus a constant. It must do so to a thousandth of its own
-/// size, or exactly if it could be a reference that the axis follows as closely. Constant channels are not copies.
+/// size, or exactly if it could be a reference that the axis follows as closely, or, for a current and its command, to
+/// the rounding of both. Constant channels are not copies.
 std::optional<ScaledCopy> scaled_copy(const Record& record);
 
 /// Whether the speed is exactly the difference of positions over one or two rows.

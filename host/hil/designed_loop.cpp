@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "host/exit_codes.hpp"
 #include "host/hil/closed_loop.hpp"
@@ -38,25 +38,31 @@ PredictedRun predicted_run(const sim::DriveDescription& model, const firmware::A
   }
 }
 
+/// The designed controller last; before it the one that it is compared with, if there is one.
+using PredictedRuns = std::vector<PredictedRun>;
+
+std::vector<double> times_of(const PredictedRuns& runs) {
+  return std::ranges::max_element(runs, {}, [](const PredictedRun& run) { return run.record.size(); })->record.t_s;
+}
+
 /// Position over time of the runs, or if `is_error` reference minus position, in the travel's unit times `factor`.
-TracePanel panel_of(const std::array<PredictedRun, 2>& runs, const char* quantity, const char* unit, double factor,
-                    bool is_error) {
-  constexpr std::array kNames{"before", "designed"};
-  constexpr std::array kRoles{SeriesRole::before, SeriesRole::model};
+TracePanel panel_of(const PredictedRuns& runs, const char* quantity, const char* unit, double factor, bool is_error) {
   TracePanel panel{quantity, unit, {}};
-  const std::size_t rows = std::max(runs[0].record.size(), runs[1].record.size());
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const Record& record = runs[k].record;
+  const std::size_t rows = times_of(runs).size();
+  for (const PredictedRun& run : runs) {
+    const Record& record = run.record;
     if (record.x.empty()) continue;
+    const bool is_designed = &run == &runs.back();
     std::vector<double> values(rows, std::nan(""));
     for (std::size_t row = 0; row < record.size(); ++row)
       values[row] = factor * (is_error ? record.x_ref[row] - record.x[row] : record.x[row]);
-    panel.traces.push_back({kNames[k], kRoles[k], std::move(values)});
+    panel.traces.push_back(
+        {is_designed ? "designed" : "before", is_designed ? SeriesRole::model : SeriesRole::before, std::move(values)});
   }
   return panel;
 }
 
-TracePanel commands_of(const std::array<PredictedRun, 2>& runs) {
+TracePanel commands_of(const PredictedRuns& runs) {
   TracePanel panel = panel_of(runs, "command", "V", 1.0, false);
   std::size_t next = 0;
   for (const PredictedRun& run : runs) {
@@ -66,15 +72,29 @@ TracePanel commands_of(const std::array<PredictedRun, 2>& runs) {
   return panel;
 }
 
-std::vector<double> times_of(const std::array<PredictedRun, 2>& runs) {
-  return runs[0].record.size() > runs[1].record.size() ? runs[0].record.t_s : runs[1].record.t_s;
-}
-
 double largest_error(const Record& record) {
   double most = 0.0;
   for (std::size_t row = 0; row < record.size(); ++row)
     most = std::max(most, std::abs(record.x_ref[row] - record.x[row]));
   return most;
+}
+
+void add_limits(Report& report, const sim::DriveDescription& model, const DriveLimits& limits) {
+  const double mm = travel_in_mm(model.data.kind);
+  report.section("Limits of the references",
+                 fmt::format("They keep the command out of saturation: with them the drive needs {:.3g} V of {:.3g} V. "
+                             "What the drive allows leaves {:g} % of its effort in reserve for feedback and cutting.",
+                             limits.command_V, limits.limit_V, 100.0 * limits.reserve));
+  Table table{
+      .title = "", .caption = "", .headings = {"limit", "written", "the drive allows", "unit", "set by"}, .rows = {}};
+  const auto add = [&](const char* name, double written, const DriveLimit& drive, const char* unit) {
+    table.rows.push_back({name, format_value(mm * written),
+                          std::isinf(drive.value) ? "any" : format_value(mm * drive.value), unit, drive.by});
+  };
+  add("velocity", limits.written.velocity, limits.velocity, "mm/s");
+  add("acceleration", limits.written.acceleration, limits.acceleration, "mm/s²");
+  add("jerk", limits.written.jerk, limits.jerk, "mm/s³");
+  report.add(std::move(table));
 }
 
 }  // namespace
@@ -110,40 +130,39 @@ nlohmann::json designed_loop_json(const DesignedLoop& designed) {
 
 void add_predicted_motion(Report& report, const sim::DriveDescription& model, const DesignedLoop& designed,
                           const DesignOptions& options) {
-  const auto controller = [&](const AxisDesign& design, const ControlFilterChoice& filters) {
-    return designed_parameters(model, design, filters);
-  };
-  const std::array controllers{controller(design_axis(model, options), {}),
-                               controller(designed.design, designed.filters)};
+  std::vector<firmware::AxisParameters<float>> controllers;
+  const ReferenceLimits& limits = designed.limits.written;
+  if (designed.loop || designed.filters.notch || designed.filters.low_pass)
+    controllers.push_back(designed_parameters(model, design_axis(model, options), {}, limits));
+  controllers.push_back(designed_parameters(model, designed.design, designed.filters, limits));
   // A tenth of the command's range by the feedback alone, and a move that reaches its speed for a tenth of a second.
   const double step = 0.1 * model.data.dac_limit_V / std::max(std::abs(designed.design.Kc(0)), 1e-9);
-  const ReferenceLimits limits = ReferenceLimits::usual_for(model.data.kind);
   const double v = limits.velocity, a = limits.acceleration, j = limits.jerk;
   const double travel = v * (v / a + a / j + 0.1);
-  std::array<PredictedRun, 2> steps, moves;
-  for (std::size_t k = 0; k < controllers.size(); ++k) {
-    steps[k] = predicted_run(model, controllers[k], [&](ClosedLoop& loop) {
+  PredictedRuns steps, moves;
+  for (const auto& controller : controllers) {
+    steps.push_back(predicted_run(model, controller, [&](ClosedLoop& loop) {
       loop.run(0.02);
       loop.step_reference(step);
       loop.run(0.2);
-    });
-    moves[k] = predicted_run(model, controllers[k], [&](ClosedLoop& loop) {
+    }));
+    moves.push_back(predicted_run(model, controller, [&](ClosedLoop& loop) {
       loop.run(0.05);
       loop.start_move_to(travel);
       loop.run_until_at_rest();
       loop.run(0.1);
-    });
+    }));
   }
   const DriveUnits units = units_of(model.data.kind);
   const double um = 1e3 * travel_in_mm(model.data.kind);
   report.section("Predicted motion", "The model in closed loop with the board's own controller, noise included.");
   Facts facts;
-  for (std::size_t k = 0; k < moves.size(); ++k)
+  for (const PredictedRun& move : moves)
     facts.items.emplace_back(
-        k == 0 ? "largest following error before" : "largest following error, designed",
-        moves[k].problem.empty() ? format_value(um * largest_error(moves[k].record)) + " µm" : moves[k].problem);
+        &move == &moves.back() ? "largest following error, designed" : "largest following error before",
+        move.problem.empty() ? format_value(um * largest_error(move.record)) + " µm" : move.problem);
   report.add(std::move(facts));
-  const auto add = [&](const std::string& title, const std::array<PredictedRun, 2>& runs, bool is_move) {
+  const auto add = [&](const std::string& title, const PredictedRuns& runs, bool is_move) {
     TimePlot plot;
     plot.title = title;
     plot.t_s = times_of(runs);
@@ -163,6 +182,7 @@ Report designed_loop_report(const sim::DriveDescription& model, const DesignedLo
   const std::string title = "axis " + model.name + ", designed";
   Report report = designed.loop ? response_report(designed.loop->after, title, &designed.loop->before)
                                 : Report("Controller", title);
+  add_limits(report, model, designed.limits);
   add_predicted_motion(report, model, designed, options);
   return report;
 }

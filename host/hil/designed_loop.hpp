@@ -27,12 +27,12 @@ DesignedLoop designed_loop(const sim::DriveDescription& model, const DesignOptio
 /// The document of `design --json`.
 nlohmann::json designed_loop_json(const DesignedLoop& designed);
 
-/// Adds a step and a move of the model with the controller of `options` without filters ("before") and with the
-/// designed one: positions, following error, command.
+/// Adds a step and a move of the model with the designed controller, and, if filters or a response changed it, with
+/// that of `options` without filters ("before"): positions, following error, command.
 void add_predicted_motion(Report& report, const sim::DriveDescription& model, const DesignedLoop& designed,
                           const DesignOptions& options);
 
-/// Margins and response (response_report) if there is one, and the predicted motion.
+/// Margins and response (response_report) if there is one, limits of the references, and the predicted motion.
 Report designed_loop_report(const sim::DriveDescription& model, const DesignedLoop& designed,
                             const DesignOptions& options);
 

@@ -27,9 +27,10 @@ firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& mod
 }
 
 firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
-                                                    const ControlFilterChoice& filters) {
-  auto parameters =
-      firmware::axis_parameters<float>(values_of(model, design, ReferenceLimits::usual_for(model.data.kind)).axis(0));
+                                                    const ControlFilterChoice& filters,
+                                                    const std::optional<ReferenceLimits>& limits) {
+  auto parameters = firmware::axis_parameters<float>(
+      values_of(model, design, limits.value_or(ReferenceLimits::usual_for(model.data.kind))).axis(0));
   parameters.filters = core_filters(filters, model.data.sample_period_s);
   return parameters;
 }

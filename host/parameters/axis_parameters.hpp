@@ -14,9 +14,11 @@ namespace host {
 firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                 double tachometer_resolution, const ReferenceLimits& limits = {});
 
-/// The same with the switches of board_parameters(), as on a board after `design` and `set-params`.
+/// The same with the switches of board_parameters(), as on a board after `design` and `set-params`. Without `limits`:
+/// the usual ones.
 firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
-                                                    const ControlFilterChoice& filters = {});
+                                                    const ControlFilterChoice& filters = {},
+                                                    const std::optional<ReferenceLimits>& limits = {});
 
 /// The estimator of a board's axis, Kobs of a design.
 Eigen::Matrix<double, 3, Eigen::Dynamic> estimator_of(const firmware::AxisValues& board);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -111,6 +112,61 @@ TEST_F(Circle, AnAxisThatSticksIsTold) {
   EXPECT_EQ(found["causes"][0]["axis"], "y");
   EXPECT_NEAR(found["causes"][0]["um"], 30.0, 3.0);  // lag of 15 um towards either end
   EXPECT_THAT(found["cannot_see"], Not(Contains("stick_slip")));
+}
+
+/// Friction makes the motor late by up to 10 um after each reversal of x, and the table rests until the motor has
+/// crossed the gap: the late motor must not be counted twice.
+TEST_F(Circle, BacklashAndReversalSpikeOfOneAxisHaveTheirOwnSizes) {
+  std::string files;
+  for (const double direction : {1.0, -1.0}) {
+    std::string text =
+        "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.001\n"
+        "t_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm,radius_mm\n";
+    constexpr double kGap_mm = 0.012, kDecay_s = 0.02;
+    double table = 29.994;
+    for (int k = 0; k < 6800; ++k) {
+      const double t_s = 0.001 * k, turned = 2.0 * t_s, x = 30.0 * std::cos(turned);
+      const double y = direction * 30.0 * std::sin(turned),
+                   since = std::fmod(turned, std::numbers::pi) / 2.0 / kDecay_s;
+      const double motor = x + std::copysign(0.010 * since * std::exp(1.0 - since), std::sin(turned));
+      table = std::clamp(table, motor - 0.5 * kGap_mm, motor + 0.5 * kGap_mm);
+      for (const double value : {t_s, 0.1 * (k % 7), std::floor(motor * 2e3) / 2e3, x, std::floor(y * 2e3) / 2e3, y})
+        text += std::to_string(value) + ",";
+      text += std::to_string(std::hypot(table, y) + 1e-4 * std::sin(1.7 * k * k)) + "\n";
+    }
+    files += folder_.write(direction > 0.0 ? "ccw.csv" : "cw.csv", text) + " ";
+  }
+  const json found = circle(files);
+  ASSERT_EQ(found["causes"].size(), 2u) << found.dump(2);
+  for (const json& cause : found["causes"]) {
+    const bool is_gap = cause["kind"] == "backlash";
+    EXPECT_EQ(cause["kind"], is_gap ? "backlash" : "reversal_spike");
+    EXPECT_EQ(cause["axis"], "x");
+    EXPECT_NEAR(cause["um"], is_gap ? 12.0 : 10.0, is_gap ? 0.2 : 0.5);
+  }
+}
+
+/// Each row of the slow circle is the mean of 40 ms. A vibration of 27.7 Hz leaves a seventh of its amplitude there, at
+/// another frequency.
+TEST_F(Circle, AVibrationIsOneCauseAlsoWhereARowIsLongerThanItsPeriod) {
+  std::string files;
+  for (const double turn_rad_s : {0.2, 2.0}) {
+    std::string text =
+        "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.001\nt_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm\n";
+    for (int k = 0; k < (turn_rad_s < 1.0 ? 34000 : 7000); ++k) {
+      const double t_s = 0.001 * k, x = 0.0003 + 20.0 * std::cos(turn_rad_s * t_s),
+                   y = 20.0 * std::sin(turn_rad_s * t_s);
+      const double seen = x + 0.003 * std::sin(2.0 * std::numbers::pi * 27.7 * t_s);
+      for (const double value : {t_s, 0.1 * (k % 7), std::floor(seen * 5e3) / 5e3, x, std::floor(y * 5e3) / 5e3})
+        text += std::to_string(value) + ",";
+      text += std::to_string(y) + "\n";
+    }
+    files += folder_.write(turn_rad_s < 1.0 ? "slow.csv" : "fast.csv", text) + " ";
+  }
+  const json found = circle(files);
+  ASSERT_EQ(found["causes"].size(), 1u) << found.dump(2);
+  EXPECT_TRUE(found["minor"].empty()) << found.dump(2);
+  EXPECT_NEAR(found["causes"][0]["um"], 6.0, 0.2);
 }
 
 /// The shipped ballbar scenario with other errors of the table, or its own.

@@ -83,6 +83,7 @@ TEST_P(Excite, StepsOnAnEmptyBoardIdentifyTheDrive) {
       run_axistool("identify " + file("r.csv") + " --drive " + data_sheet() + " -o " + file("found.toml") + " --json -",
                    "2>/dev/null");
   ASSERT_EQ(identified.exit_code, 0) << identified.output;
+  EXPECT_EQ(run_axistool("identify " + file("r.csv") + " --drive " + data_sheet() + " --window 1").exit_code, 2);
   const auto found = nlohmann::json::parse(identified.output)["parameters"];
   const bool is_linear = std::string(GetParam().inertia) == "M_kg";
   EXPECT_NEAR(found[GetParam().inertia]["value"].get<double>() / GetParam().J, 1.0, 0.02);

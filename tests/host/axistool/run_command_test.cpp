@@ -405,6 +405,7 @@ TEST(RunAlone, ADryRunNeedsNoBoard) {
   const ProgramRun dry = run_axistool("run " + kPrograms + "square.ngc --dry-run --params " + folder.path("p.toml"));
   EXPECT_EQ(dry.exit_code, 0) << dry.output;
   EXPECT_THAT(dry.output, HasSubstr("x 0.000 to 40.000 mm, y 0.000 to 40.000 mm"));
+  EXPECT_THAT(dry.output, HasSubstr("the command that y needs is unknown"));
 }
 
 }  // namespace

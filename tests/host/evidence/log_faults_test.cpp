@@ -102,6 +102,25 @@ TEST_F(LogFaults, SpeedDerivedFromPosition) {
   EXPECT_EQ(faults[0].kind, LogFaultKind::derived_channel);
 }
 
+/// The current that a good amplifier makes, measured with noise of a thousandth, is no copy of the command; a computed
+/// one is, even if both were rounded when they were written.
+TEST_F(LogFaults, ACurrentComputedFromTheCommandIsACopyAndAMeasuredOneIsNot) {
+  const auto rounded = [](double value, double step) { return step * std::round(value / step); };
+  for (double& u : record.u_V) u = rounded(u, 1e-4);
+  const auto [low, high] = std::ranges::minmax(record.u_V);
+  for (const bool is_measured : {false, true}) {
+    record.i_A.clear();
+    for (std::size_t k = 0; k < record.u_V.size(); ++k) {
+      const double noise = is_measured ? 3e-4 * (high - low) * std::sin(1.7 * static_cast<double>(k * k)) : 0.0;
+      record.i_A.push_back(rounded(6.2 * (record.u_V[k] + noise), 1e-4));
+    }
+    if (is_measured)
+      EXPECT_TRUE(host::log_faults(record, model).empty());
+    else
+      expect_only(LogFaultKind::scaled_copy, "i_A", 6.2, 1e-3);
+  }
+}
+
 TEST_F(LogFaults, CommandOfTheWrongSign) {
   for (double& u_V : record.u_V) u_V = -u_V;
   expect_only(LogFaultKind::command_sign, "u_V", -1.0, 0.0);

@@ -1,6 +1,7 @@
 // A controller is judged before anything is written: on the response that the model predicts, and in motion.
 #include "host/hil/designed_loop.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "host/exit_codes.hpp"
@@ -58,7 +59,22 @@ TEST(DesignedLoop, ThePageShowsStepAndFollowingErrorOfBothControllers) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   const DesignedLoop by_model_alone = host::designed_loop(model, {}, {}, {}, std::nullopt);
   EXPECT_FALSE(by_model_alone.loop);
-  EXPECT_NE(host::designed_loop_report(model, by_model_alone, {}).html().find("Predicted motion"), std::string::npos);
+  const std::string alone = host::designed_loop_report(model, by_model_alone, {}).html();
+  EXPECT_NE(alone.find("Predicted motion"), std::string::npos);
+  EXPECT_NE(alone.find("largest following error, designed"), std::string::npos);
+  EXPECT_EQ(alone.find("largest following error before"), std::string::npos);
+}
+
+TEST(DesignedLoop, ThePageMovesTheAxisAtTheWrittenLimitsAndSaysWhatSetsThem) {
+  const sim::DriveDescription model = *host::paper_drive("x");
+  host::LimitWishes wishes;
+  wishes.as_the_drive_allows = true;
+  wishes.top_speed_mm_s = 100.0;
+  const DesignedLoop loop = host::designed_loop(model, {}, {}, wishes, std::nullopt);
+  const std::string page = host::designed_loop_report(model, loop, {}).html();
+  EXPECT_NE(page.find(loop.limits.jerk.by), std::string::npos);
+  const auto [v, a, j] = loop.limits.written;
+  EXPECT_NE(page.find(fmt::format("Move over {:.3g} mm", v * (v / a + a / j + 0.1))), std::string::npos);
 }
 
 }  // namespace
