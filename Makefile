@@ -232,8 +232,9 @@ made-machines: ## The scoreboard on drives of a plant that shares nothing with t
 test-machines: ## Machines of independent plants that make test leaves out, because each takes minutes (after a change to diagnose)
 	$(NEED) build test
 	$(call configure,$(BUILD))
-	ninja -C $(BUILD) -j $(JOBS) axistool made_machines
-	AXIS_ALL_MACHINES=1 ctest --test-dir $(BUILD) --no-tests=error --verbose --tests-regex '^host/(effects_of_both_kinds|blind_tables)$$'
+	ninja -C $(BUILD) -j $(JOBS) axistool made_machines test_host_diagnose
+	AXIS_ALL_MACHINES=1 ctest --test-dir $(BUILD) --no-tests=error --verbose \
+	  --tests-regex '^host/(effects_of_both_kinds|blind_tables|diagnose/(RealCogging|SearchBySteps)[.].*)$$'
 
 .PHONY: plan-bench
 plan-bench: ## Plan, run and decide on machines made by independent code, pair by pair (CASES=DIR: the public cases)

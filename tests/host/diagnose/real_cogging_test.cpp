@@ -13,6 +13,7 @@
 #include "host/record/channel_checks.hpp"
 #include "host/record/read_record.hpp"
 #include "sim/harmonic.hpp"
+#include "tests/host/skip_unless_all_machines.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
@@ -22,6 +23,7 @@ const std::filesystem::path kMotor = std::filesystem::path(AXIS_SHARED_DIR) / "d
 /// Catches a base that is biased by a noisy acceleration, and waves that one poor held-back record refutes by chance.
 TEST(RealCogging, IsImprovedByItsOrders) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
+  AXIS_SKIP_UNLESS_ALL_MACHINES();
   if (!std::filesystem::exists(kMotor)) GTEST_SKIP() << kMotor << " is absent";
   const sim::DriveDescription model = host::read_model((kMotor / "model.toml").string());
   const auto read = [&](const char* name) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "host/scoreboard/answer.hpp"
+#include "tests/host/skip_unless_all_machines.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
@@ -44,6 +45,7 @@ TEST_F(SearchBySteps, FindsAGapBehindStartsThatAreWorseThanNone) {
 /// The load carries all friction. Seed: the fit with a divided friction compared with the other form unfitted, which
 /// then never reaches the gap's size.
 TEST_F(SearchBySteps, FindsAGapBesideTwoEffectsOfFriction) {
+  AXIS_SKIP_UNLESS_ALL_MACHINES();
   EXPECT_THAT(found_in("triples/case-04").verdict.effects,
               UnorderedElementsAre("coulomb_asymmetry", "backlash", "dac_dead_zone"));
 }
