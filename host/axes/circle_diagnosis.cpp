@@ -243,8 +243,9 @@ class CircleSearch {
   /// Refines each wave's period or frequency, and the way through each gap, together with all other causes.
   void refine(Causes& causes, const EvidenceFit& fit) const {
     for (std::size_t i = 0; i < causes.size(); ++i) {
-      if (const double gap_um = fit.factors(columns_before(causes, i)); causes[i].kind == "backlash" && gap_um > 0.0)
-        causes[i] = backlash_cause(rows_, causes[i].axis.front(), gap_um);
+      if (causes[i].kind == "backlash")
+        if (const double gap_um = fit.factors(columns_before(causes, i)); gap_um > 0.0)
+          causes[i] = backlash_cause(rows_, causes[i].axis.front(), gap_um);
       if (!is_wave(causes[i])) continue;
       const VectorXd others =
           columns(causes) * fit.factors -

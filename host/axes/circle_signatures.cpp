@@ -334,15 +334,12 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
   using Wave = double (*)(double);
   const Wave waves[] = {[](double a) { return std::cos(a); }, [](double a) { return std::sin(a); }};
   std::vector<CircleRows::Signature> signatures;
-  std::vector<bool> is_hidden;
   if (kind == WaveKind::vibration) {
     for (std::size_t i = 0; i < rows.passes().size(); ++i)
-      for (const Wave wave : waves) {
+      for (const Wave wave : waves)
         signatures.emplace_back([=, own = &rows.passes()[i]](const CirclePass& pass, std::size_t k) {
           return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
         });
-        is_hidden.push_back(!shows_through(value, rows.row_s(i)));
-      }
   } else {
     // The loop's response to a torque, as a series in j times the frequency, which is proportional to the axis's speed.
     const double top = most(rows.passes(), feed_of);
@@ -361,8 +358,9 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
   CircleCause made = cause(rows, name, {axis}, signatures, kind == WaveKind::cyclic_error, -std::log(kPlaces));
   (kind == WaveKind::vibration ? made.frequency_Hz : made.period_mm) = value;
   // Rows that hardly show the wave still contain a part of it, as an alias; its size comes from the other passes.
-  for (std::size_t i = 0; i < is_hidden.size(); ++i)
-    if (is_hidden[i]) made.signatures[i] = [](const CirclePass&, std::size_t) { return 0.0; };
+  for (std::size_t i = 0; kind == WaveKind::vibration && i < made.signatures.size(); ++i)
+    if (!shows_through(value, rows.row_s(i / std::size(waves))))
+      made.signatures[i] = [](const CirclePass&, std::size_t) { return 0.0; };
   return made;
 }
 
