@@ -16,6 +16,7 @@
 #include "host/identify/inverse_model.hpp"
 #include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -198,7 +199,7 @@ class KindSearch {
     const bool has_load = !drops_ || effort_.balance == nullptr || allows_second_mass(*effort_.balance, kinds_);
     std::erase_if(later, [&](const std::vector<Start>& starts) {
       const Start& start = starts.front();
-      return is_ruled_out_by(leader, *start.info) || (!has_load && sim::Drive(start.model).has_second_mass());
+      return is_ruled_out_by(leader, *start.info) || (!has_load && sim::is_second_mass(start.info->kind));
     });
     look_at(later, part_of(progress, 0.4, 0.7));
     std::vector<Candidate> candidates = candidates_of(finalists());
