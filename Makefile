@@ -92,16 +92,16 @@ test: ## Build and run all tests, those of what reads files or a bus with saniti
 	$(call firmware)
 	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
 	ninja -C $(BUILD) -j $(JOBS)
-	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
+	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug -DAXIS_PLAIN_BUILD=$(abspath $(BUILD)))
 	ninja -C $(CHECKED) -j $(JOBS)
 	ctest --test-dir $(BUILD) --no-tests=error --output-on-failure --parallel $(JOBS)
 
 .PHONY: test-sanitized
-test-sanitized: ## Every unit test of the host tools with sanitizers, those that only compute too (half an hour)
+test-sanitized: ## Every unit test with sanitizers, of what only computes too (half an hour)
 	$(NEED) build test
-	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_SANITIZE_ALL=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
+	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug -DAXIS_PLAIN_BUILD=)
 	ninja -C $(CHECKED) -j $(JOBS)
-	ctest --test-dir $(CHECKED) --no-tests=error --output-on-failure --parallel $(JOBS) --tests-regex '^host/[a-z_]+/[A-Z]'
+	ctest --test-dir $(CHECKED) --no-tests=error --output-on-failure --parallel $(JOBS) --tests-regex '^(host|firmware|sim)[a-z_/]*/[A-Z]'
 
 .PHONY: test-usb
 test-usb: firmware ## Boards on Linux' own USB and GPIO stack, in an emulated PC (part of `make test`)

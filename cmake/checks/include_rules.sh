@@ -26,7 +26,9 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/infer/"] = "host/infer/"
     may["host/scale/"] = "host/scale/ host/infer/ host/report/ " may["host/evidence/"]
     may["host/effort/"] = "host/effort/ host/infer/ " may["host/compare/"]
-    may["host/diagnose/"] = "host/diagnose/ host/scale/ " may["host/effort/"]
+    may["host/fit/"] = "host/fit/ " may["host/compare/"]
+    may["host/search/"] = "host/search/ host/fit/ " may["host/effort/"]
+    may["host/diagnose/"] = "host/diagnose/ host/search/ host/fit/ host/scale/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
     may["host/path/"] = "host/path/ firmware/core/"

@@ -36,7 +36,7 @@ endif()
 
 # The library for C++, of the component "development": find_package(axis), target axis::host.
 set(FOR_CPP COMPONENT development)
-install(TARGETS axis_host axis_sim axis_hal_usbip ARCHIVE DESTINATION lib/axis ${FOR_CPP})
+install(TARGETS axis_host axis_computing axis_sim axis_hal_usbip ARCHIVE DESTINATION lib/axis ${FOR_CPP})
 install(DIRECTORY "${AXIS_ROOT}/host" "${AXIS_ROOT}/sim" "${AXIS_ROOT}/hal" "${AXIS_ROOT}/firmware"
   DESTINATION include/axis ${FOR_CPP} FILES_MATCHING PATTERN "*.hpp" PATTERN "axistool" EXCLUDE
   PATTERN "workbench" EXCLUDE PATTERN "boards" EXCLUDE)

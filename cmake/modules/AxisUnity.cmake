@@ -10,7 +10,7 @@ option(AXIS_UNITY "Compile the sources of a folder together" OFF)
 # itself. AXIS_HOT_FOLDERS and separate sources, which compute, get -O2. All others get -O1, which takes two thirds of
 # the compile time.
 set(AXIS_UNITY_SOURCES 30)
-set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer scale simulated_board)
+set(AXIS_HOT_FOLDERS sim effects compare fit search diagnose effort infer scale simulated_board)
 function(axis_unity OUT)
   if(NOT AXIS_UNITY)
     set(${OUT} ${ARGN} PARENT_SCOPE)

@@ -7,7 +7,7 @@
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/compare/comparison_report.hpp"
-#include "host/diagnose/prediction_fit.hpp"
+#include "host/fit/prediction_fit.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"

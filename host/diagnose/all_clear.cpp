@@ -8,10 +8,10 @@
 #include <cmath>
 #include <tuple>
 
-#include "host/diagnose/base_fit.hpp"
-#include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/diagnose/visibility.hpp"
+#include "host/fit/base_fit.hpp"
+#include "host/search/candidate_search.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {

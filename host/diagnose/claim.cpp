@@ -1,14 +1,10 @@
 #include "host/diagnose/claim.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "host/compare/chance.hpp"
-#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/probability.hpp"
-#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -44,11 +40,6 @@ double combined_of_both(const JudgedCandidate& candidate) { return std::sqrt(can
 
 }  // namespace
 
-double explained_share(double before, double after) {
-  const double there_is = before * before - kComplete * kComplete;
-  return there_is > 0.0 ? std::clamp((before * before - after * after) / there_is, 0.0, 1.0) : 0.0;
-}
-
 double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   return std::min(explained_share(candidate.before, candidate.after),
                   explained_share(diagnosis.before_train, candidate.train_after));
@@ -74,39 +65,6 @@ std::size_t parameters_of(const JudgedCandidate& candidate) {
   for (const std::string& kind : candidate.kinds)
     if (const sim::EffectEntry* entry = candidate.model.find(kind)) count += entry->parameters.size();
   return count;
-}
-
-std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
-                                             const std::vector<std::string>& kinds) {
-  std::vector<std::string> found;
-  for (const std::string& kind : kinds) {
-    const sim::EffectEntry* entry = model.find(kind);
-    if (entry == nullptr) continue;
-    for (const auto& [id, value] : entry->parameters) {
-      const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
-      if (info != nullptr && info->is_stopped_at(value))
-        found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
-    }
-  }
-  return found;
-}
-
-std::vector<std::string> unphysical_parameters(const sim::DriveDescription& model,
-                                               const std::vector<std::string>& kinds, const RecordSet& training) {
-  constexpr double kFarthest = 10.0;  // travels: over one travel the effect changes by a tenth, as kWorthNaming asks
-  std::vector<std::string> found = parameters_on_bound(model, kinds);
-  for (const std::string& kind : kinds) {
-    const sim::EffectEntry* entry = model.find(kind);
-    if (entry == nullptr) continue;
-    for (const auto& [id, value] : entry->parameters) {
-      const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
-      if (info == nullptr || info->scale != sim::Scale::position) continue;
-      const RecordScales scales = scales_of(training);
-      if (std::abs(value - scales.middle) > kFarthest * scales.travel)
-        found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
-    }
-  }
-  return found;
 }
 
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {

@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
+#include "host/search/explained_share.hpp"
 
 namespace host {
-
-/// Error of a complete model over its noise floor: simulated cases without an effect give 0.8 to 1.05.
-inline constexpr double kComplete = 1.0;
 
 /// Largest p-value of an improvement that is claimed.
 inline constexpr double kMostLuck = 0.05;
@@ -21,12 +19,6 @@ inline constexpr double kLeastGain = 0.05;
 
 /// Candidates whose levels differ by a smaller share are not told apart.
 inline constexpr double kTie = 0.05;
-
-/// Two models predict equally well if their errors differ by a smaller factor.
-inline constexpr double kAsGood = 1.1;
-
-/// Explained share of the explainable squared error, before^2 - kComplete^2; 0..1. 0 if nothing is explainable.
-double explained_share(double before, double after);
 
 /// The same share of a candidate, on the set of which it is smaller.
 double explained_by(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
@@ -54,15 +46,6 @@ enum class Reservation {
 
 /// The first reservation, in the order above.
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
-
-/// Parameters of the effects in `kinds` that are at a bound of their range, for example "compliance: damping_ratio". A
-/// bound at which that part of the effect is absent is allowed (sim::ParameterInfo::is_stopped_at).
-std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
-
-/// The same, and positions so far outside the travel of the records that the effect hardly changes over the travel and
-/// stands in for a constant.
-std::vector<std::string> unphysical_parameters(const sim::DriveDescription& model,
-                                               const std::vector<std::string>& kinds, const RecordSet& training);
 
 /// Seconds of validation data for which an improvement in all windows is significant for the best of `tried`
 /// candidates.

@@ -11,18 +11,18 @@
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/connection.hpp"
-#include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
-#include "host/diagnose/model_fit.hpp"
-#include "host/diagnose/search_by_steps.hpp"
 #include "host/diagnose/table_evidence.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/evidence/measured_sensors.hpp"
 #include "host/exit_codes.hpp"
+#include "host/fit/data_sheet_conflict.hpp"
+#include "host/fit/model_fit.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/search/search_by_steps.hpp"
 #include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
 
@@ -77,7 +77,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
     return result;
   }
   if (progress) progress(0.05);
-  SearchEffort effort = SearchEffort{}.over(result.window_s);
+  SearchEffort effort{.windows = WindowCounts{}.over(result.window_s)};
   effort.nominal = &model;
   effort.balance = balance;
   effort.cut_short = &result.not_searched;

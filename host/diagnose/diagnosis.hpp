@@ -10,10 +10,10 @@
 
 #include "host/compare/error_regions.hpp"
 #include "host/compare/residual_tests.hpp"
-#include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/figure_rows.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/record/measurements.hpp"
+#include "host/search/candidate_search.hpp"
 
 namespace host {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/diagnosis.hpp"
 #include "host/exit_codes.hpp"
+#include "host/search/candidate_starts.hpp"
 
 namespace host {
 
@@ -24,7 +24,7 @@ std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo
                   fmt::format("{}: cannot be added: the model already has it (perhaps in another form) or excludes it, "
                               "or these records lack the channel that shows it",
                               effect.kind));
-  SearchEffort effort = SearchEffort{}.over(sets.window_s);
+  SearchEffort effort{.windows = WindowCounts{}.over(sets.window_s)};
   effort.nominal = &nominal;
   effort.balance = balance;
   std::vector<Candidate> found = search_kinds({&effect}, sets.base, {}, sets.training, sets.validation, {}, effort);

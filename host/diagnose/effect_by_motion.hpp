@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "host/diagnose/candidate_search.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/record/measurements.hpp"
+#include "host/search/candidate_search.hpp"
 
 namespace host {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/compare/error_figures.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/record/measurements.hpp"
 
 namespace host {

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "host/diagnose/parameter_covariance.hpp"
+#include "host/fit/parameter_covariance.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/text_format.hpp"
 #include "host/statistics.hpp"

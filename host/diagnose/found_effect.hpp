@@ -9,7 +9,7 @@
 
 #include "host/compare/residual_figures.hpp"
 #include "host/diagnose/effect_points.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/report/report.hpp"
 #include "sim/effect.hpp"
 

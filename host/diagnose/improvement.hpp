@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 namespace host {
 

@@ -9,6 +9,7 @@
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/parallel.hpp"
+#include "host/search/physical_range.hpp"
 
 namespace host {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/diagnosis.hpp"
-#include "host/diagnose/search_by_steps.hpp"
+#include "host/search/candidate_search.hpp"
+#include "host/search/search_by_steps.hpp"
 
 namespace host {
 

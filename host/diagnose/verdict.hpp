@@ -3,11 +3,9 @@
 #pragma once
 
 #include "host/diagnose/diagnosis.hpp"
+#include "host/search/explained_share.hpp"
 
 namespace host {
-
-/// Combined error above which something remains to be explained; a perfect model gives about 1.
-inline constexpr double kExplained = 1.25;
 
 /// Whether a refit changed a parameter of an effect by more than 5 %, or its form.
 bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after);

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "host/dense_solutions.hpp"
-#include "host/diagnose/candidate_starts.hpp"
-#include "host/diagnose/parameter_vector.hpp"
+#include "host/fit/parameter_vector.hpp"
 #include "host/parallel.hpp"
+#include "host/search/candidate_starts.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numeric>
 
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/information.hpp"
 

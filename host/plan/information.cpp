@@ -7,7 +7,7 @@
 
 #include "host/compare/prediction.hpp"
 #include "host/dense_solutions.hpp"
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 namespace host {
 

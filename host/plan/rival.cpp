@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/diagnose/base_fit.hpp"
-#include "host/diagnose/candidate_starts.hpp"
-#include "host/diagnose/model_fit.hpp"
 #include "host/exit_codes.hpp"
+#include "host/fit/base_fit.hpp"
+#include "host/fit/model_fit.hpp"
 #include "host/parallel.hpp"
+#include "host/search/candidate_starts.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {

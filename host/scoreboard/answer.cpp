@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "host/diagnose/improvement.hpp"
-#include "host/diagnose/prepared_sets.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/model/model_file.hpp"
 #include "host/scoreboard/simulated_null.hpp"
 #include "sim/catalogue.hpp"

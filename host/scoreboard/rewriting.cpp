@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/diagnose/model_fit.hpp"
 #include "host/evidence/measurement_gate.hpp"
+#include "host/fit/model_fit.hpp"
 #include "host/model/model_file.hpp"
 #include "host/record/columns.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 namespace {
 

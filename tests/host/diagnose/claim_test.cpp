@@ -9,6 +9,7 @@
 #include "host/compare/chance.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/search/physical_range.hpp"
 #include "tests/host/diagnose/sum_of_probabilities.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 

@@ -9,7 +9,7 @@
 #include "host/compare/residual_tests.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/improvement.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "host/scoreboard/simulated_null.hpp"
 #include "sim/curve.hpp"
 #include "tests/host/diagnose/drive_case.hpp"

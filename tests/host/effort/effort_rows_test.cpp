@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 #include "tests/host/effort/made_effort.hpp"
 
 namespace {

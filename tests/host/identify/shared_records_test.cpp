@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "host/diagnose/prediction_fit.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
+#include "host/fit/prediction_fit.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"

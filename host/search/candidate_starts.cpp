@@ -1,4 +1,4 @@
-#include "host/diagnose/candidate_starts.hpp"
+#include "host/search/candidate_starts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "host/diagnose/balance_odds.hpp"
+#include "host/search/balance_odds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "host/diagnose/candidate_search.hpp"
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
+#include "host/search/candidate_search.hpp"
 
 namespace host {
 

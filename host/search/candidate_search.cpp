@@ -1,4 +1,4 @@
-#include "host/diagnose/candidate_search.hpp"
+#include "host/search/candidate_search.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,29 +7,18 @@
 #include <optional>
 #include <utility>
 
-#include "host/diagnose/balance_odds.hpp"
-#include "host/diagnose/candidate_starts.hpp"
-#include "host/diagnose/claim.hpp"
-#include "host/diagnose/effect_start.hpp"
-#include "host/diagnose/fit_budget.hpp"
-#include "host/diagnose/verdict.hpp"
+#include "host/fit/fit_budget.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/parallel.hpp"
+#include "host/search/balance_odds.hpp"
+#include "host/search/candidate_starts.hpp"
+#include "host/search/effect_start.hpp"
+#include "host/search/explained_share.hpp"
+#include "host/search/physical_range.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/second_mass.hpp"
 
 namespace host {
-
-SearchEffort SearchEffort::over(double window_s) const {
-  const auto scaled = [&](std::size_t windows) {
-    return static_cast<std::size_t>(static_cast<double>(windows) * kWindow_s / window_s);
-  };
-  SearchEffort effort = *this;
-  effort.coarse_windows = scaled(coarse_windows);
-  effort.medium_windows = scaled(medium_windows);
-  effort.final_windows = scaled(final_windows);
-  return effort;
-}
 
 ShareDone part_of(const ShareDone& progress, double from, double to) {
   if (!progress) return {};
@@ -177,9 +166,9 @@ class KindSearch {
         training_(training),
         validation_(validation),
         effort_(effort),
-        coarse_(thinned(training, effort.coarse_windows)),
-        medium_(thinned(training, effort.medium_windows)),
-        last_(thinned(training, effort.final_windows)),
+        coarse_(thinned(training, effort.windows.coarse)),
+        medium_(thinned(training, effort.windows.medium)),
+        last_(thinned(training, effort.windows.final)),
         drops_(drops),
         is_costly_(needs_own_floors(model)),
         // The base is also fitted to these few windows, so that the comparison with the candidates is fair.

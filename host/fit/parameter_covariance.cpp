@@ -1,9 +1,9 @@
-#include "host/diagnose/parameter_covariance.hpp"
+#include "host/fit/parameter_covariance.hpp"
 
 #include <Eigen/Core>
 
 #include "host/dense_solutions.hpp"
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 namespace host {
 

@@ -1,4 +1,4 @@
-#include "host/diagnose/parameter_vector.hpp"
+#include "host/fit/parameter_vector.hpp"
 
 #include <fmt/format.h>
 

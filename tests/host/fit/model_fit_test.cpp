@@ -1,10 +1,10 @@
 // Fits of a model to records: their budget, and what they leave and move.
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 #include <gtest/gtest.h>
 
-#include "host/diagnose/base_fit.hpp"
-#include "host/diagnose/data_sheet_conflict.hpp"
+#include "host/fit/base_fit.hpp"
+#include "host/fit/data_sheet_conflict.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
 namespace {

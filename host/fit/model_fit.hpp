@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/compare/comparison.hpp"
-#include "host/diagnose/parameter_vector.hpp"
+#include "host/fit/parameter_vector.hpp"
 
 namespace host {
 

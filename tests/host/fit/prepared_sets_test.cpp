@@ -1,4 +1,4 @@
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "host/compare/comparison.hpp"
-#include "host/diagnose/parameter_vector.hpp"
+#include "host/fit/parameter_vector.hpp"
 
 namespace host {
 

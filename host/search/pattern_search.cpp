@@ -1,4 +1,4 @@
-#include "host/diagnose/pattern_search.hpp"
+#include "host/search/pattern_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "host/diagnose/prepared_sets.hpp"
+#include "host/fit/prepared_sets.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/base_fit.hpp"
+#include "host/fit/base_fit.hpp"
 
 namespace host {
 

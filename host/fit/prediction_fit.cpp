@@ -1,10 +1,10 @@
-#include "host/diagnose/prediction_fit.hpp"
+#include "host/fit/prediction_fit.hpp"
 
 #include <fmt/format.h>
 
-#include "host/diagnose/base_fit.hpp"
-#include "host/diagnose/model_fit.hpp"
 #include "host/exit_codes.hpp"
+#include "host/fit/base_fit.hpp"
+#include "host/fit/model_fit.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {

@@ -1,9 +1,16 @@
-#include "host/diagnose/fit_budget.hpp"
+#include "host/fit/fit_budget.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace host {
+
+WindowCounts WindowCounts::over(double window_s) const {
+  const auto scaled = [&](std::size_t windows) {
+    return static_cast<std::size_t>(static_cast<double>(windows) * kWindow_s / window_s);
+  };
+  return {.coarse = scaled(coarse), .medium = scaled(medium), .final = scaled(final)};
+}
 
 RecordSet thinned(const RecordSet& set, std::size_t windows) {
   RecordSet thin = set;

@@ -1,7 +1,7 @@
 // The two limits of the likelihood on one drive. The model cannot represent its friction, which falls with speed,
 // because the model has only Coulomb friction. Each fit must be better in its own measure, on a record that neither fit
 // has used. Catches a fit that does not change the estimate, and a fit that changes a complete model.
-#include "host/diagnose/prediction_fit.hpp"
+#include "host/fit/prediction_fit.hpp"
 
 #include <gtest/gtest.h>
 

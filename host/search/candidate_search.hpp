@@ -7,6 +7,7 @@
 
 #include "host/compare/comparison.hpp"
 #include "host/effort/effort_screen.hpp"
+#include "host/fit/fit_budget.hpp"
 #include "sim/effect.hpp"
 
 namespace host {
@@ -28,15 +29,9 @@ using ShareDone = std::function<void(double)>;
 /// Maps the progress of one part of the work to the range `from` to `to`.
 ShareDone part_of(const ShareDone& progress, double from, double to);
 
-/// Numbers of windows for the first look, the serious fits and the final comparison.
 struct SearchEffort {
-  std::size_t coarse_windows = 80;
-  std::size_t medium_windows = 200;
-  std::size_t final_windows = 600;
+  WindowCounts windows = {};
   std::size_t finalists = 4;
-  /// The numbers of windows of another length that contain as many samples in total.
-  SearchEffort over(double window_s) const;
-
   const sim::DriveDescription* nominal = nullptr;    ///< the given model: its base parameters are a further start
   const EffortScreen* balance = nullptr;             ///< force balance: its fitted models are further starts
   const std::vector<std::string>* absent = nullptr;  ///< kinds that are no candidates

@@ -1,5 +1,5 @@
 // What the force balance's odds say about the effects for which the motion is searched.
-#include "host/diagnose/balance_odds.hpp"
+#include "host/search/balance_odds.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "host/diagnose/effect_start.hpp"
+#include "host/search/effect_start.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "host/diagnose/fit_budget.hpp"
-#include "host/diagnose/pattern_search.hpp"
+#include "host/fit/fit_budget.hpp"
 #include "host/parallel.hpp"
+#include "host/search/pattern_search.hpp"
 
 namespace host {
 

@@ -1,4 +1,4 @@
-#include "host/diagnose/search_by_steps.hpp"
+#include "host/search/search_by_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <span>
 #include <utility>
 
-#include "host/diagnose/balance_odds.hpp"
-#include "host/diagnose/claim.hpp"
-#include "host/diagnose/model_fit.hpp"
-#include "host/diagnose/verdict.hpp"
 #include "host/effort/second_mass_terms.hpp"
+#include "host/fit/model_fit.hpp"
 #include "host/parallel.hpp"
+#include "host/search/balance_odds.hpp"
+#include "host/search/explained_share.hpp"
+#include "host/search/physical_range.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/second_mass.hpp"
 

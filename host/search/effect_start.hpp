@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 #include "sim/effect.hpp"
 
 namespace host {

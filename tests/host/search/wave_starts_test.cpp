@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "host/compare/comparison.hpp"
-#include "host/diagnose/candidate_starts.hpp"
+#include "host/search/candidate_starts.hpp"
 #include "sim/catalogue.hpp"
 #include "tests/host/effort/made_effort.hpp"
 

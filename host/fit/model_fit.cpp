@@ -1,4 +1,4 @@
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 
 #include <ceres/ceres.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/cancellation.hpp"
-#include "host/diagnose/parameter_covariance.hpp"
+#include "host/fit/parameter_covariance.hpp"
 #include "host/statistics.hpp"
 
 namespace host {

@@ -1,4 +1,4 @@
-#include "host/diagnose/base_fit.hpp"
+#include "host/fit/base_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/diagnose/candidate_search.hpp"
-#include "host/diagnose/fit_budget.hpp"
+#include "host/fit/fit_budget.hpp"
 #include "host/parallel.hpp"
 
 namespace host {
@@ -38,7 +37,8 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
           if (!entry->held.contains(id)) value *= factor;
   }
   const double window_s = training.records.front().prepared.window_s();
-  const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
+  const WindowCounts windows = WindowCounts{}.over(window_s);
+  const RecordSet thin = thinned(training, windows.medium);
   std::vector<FitResult> results(starts.size());
   for_each_in_parallel(starts.size(), [&](std::size_t k) {
     results[k] = fit_model(starts[k], affordable(thin, starts[k], kSeriousFit), kSeriousFit);
@@ -50,7 +50,7 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
     FitResult back = fit_model(again, affordable(thin, again, kSeriousFit), kSeriousFit);
     if (back.robust < best.robust) best = std::move(back);
   }
-  const RecordSet last = thinned(training, SearchEffort{}.over(window_s).final_windows);
+  const RecordSet last = thinned(training, windows.final);
   return fit_model(best.model, affordable(last, best.model, kLastWord), kLastWord).model;
 }
 

@@ -1,11 +1,11 @@
-#include "host/diagnose/data_sheet_conflict.hpp"
+#include "host/fit/data_sheet_conflict.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/model_fit.hpp"
+#include "host/fit/model_fit.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
