@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <type_traits>
+#include <utility>
 
 #include "host/identify/zero_phase_filter.hpp"
 #include "host/parallel.hpp"
@@ -16,6 +19,7 @@ namespace host {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kGapStep = 1.5;  ///< ratio of successive widths of the gap that are tried
@@ -29,22 +33,49 @@ struct Load {
   double least_gap = 0.0;  ///< smallest gap that the encoder shows; a smaller one is a spring
 };
 
+/// The loads that are integrated side by side.
+constexpr std::size_t kSideBySide = EightSamples::RowsAtCompileTime;
+
 /// Force of the coupling over the inertia of the load, at every sample: w^2 d + 2 z w d', where d is the twist beyond
 /// the gap and d'' = a - pull + friction sign(load's speed). With a gap, the contact pushes and never pulls
 /// (sim/coupling.hpp). Semi-implicit integration with steps of an eighth of a radian. Friction can only slow the load
-/// down to rest and then holds it.
-std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
-  std::vector<double> pulls(signals.speed.size());
-  const double omega = 2.0 * std::numbers::pi * load.resonance_Hz, damping = 2.0 * load.damping * omega;
+/// down to rest and then holds it. `Sample`: a number for one load, EightSamples for at most eight with the same
+/// resonance, either all with a gap or all without one.
+template <typename Sample>
+std::vector<Sample> pulls_over(const EffortSignals& signals, std::span<const Load> loads) {
+  std::vector<Sample> pulls(signals.speed.size());
+  const double omega = 2.0 * std::numbers::pi * loads.front().resonance_Hz, square = omega * omega;
+  const bool has_gap = loads.front().gap > 0.0;
   const auto parts = static_cast<int>(std::ceil(omega * signals.period_s / 0.125));
-  const double step = signals.period_s / parts, hold = step * load.friction, half_gap = 0.5 * load.gap;
-  double speed = signals.speed.empty() ? 0.0 : signals.speed.front(), twist = 0.0;
-  const auto pull_at = [&](double motor) {
-    if (half_gap <= 0.0) return omega * omega * twist + damping * (motor - speed);
-    const double beyond = twist - std::clamp(twist, -half_gap, half_gap);
-    if (beyond == 0.0) return 0.0;
-    const double pull = omega * omega * beyond + damping * (motor - speed);
-    return beyond > 0.0 ? std::max(pull, 0.0) : std::min(pull, 0.0);
+  const double step = signals.period_s / parts;
+  const auto of_each = [&](auto value) {
+    if constexpr (std::is_same_v<Sample, double>)
+      return value(loads.front());
+    else {
+      Sample values;
+      for (std::size_t k = 0; k < kSideBySide; ++k)
+        values(static_cast<Index>(k)) = value(loads[std::min(k, loads.size() - 1)]);
+      return values;
+    }
+  };
+  const auto limited = [](const Sample& value, const Sample& least, const Sample& most) -> Sample {
+    if constexpr (std::is_same_v<Sample, double>)
+      return std::min(std::max(value, least), most);
+    else
+      return value.max(least).min(most);
+  };
+  const Sample damping = of_each([&](const Load& load) { return 2.0 * load.damping * omega; });
+  const Sample hold = of_each([&](const Load& load) { return step * load.friction; });
+  const Sample half_gap = of_each([](const Load& load) { return 0.5 * load.gap; });
+  const Sample zero = of_each([](const Load&) { return 0.0; });
+  Sample twist = zero, speed = zero;
+  if (!signals.speed.empty()) speed += signals.speed.front();
+  const auto pull_at = [&](double motor) -> Sample {
+    if (!has_gap) return square * twist + damping * (motor - speed);
+    constexpr double kUnlimited = 1e300;  // times the twist beyond the gap: in the gap both limits are 0
+    const Sample beyond = twist - limited(twist, -half_gap, half_gap);
+    return limited(square * beyond + damping * (motor - speed), kUnlimited * limited(beyond, beyond, zero),
+                   kUnlimited * limited(beyond, zero, beyond));
   };
   for (std::size_t k = 0; k < signals.speed.size(); ++k) {
     pulls[k] = pull_at(signals.speed[k]);
@@ -52,30 +83,47 @@ std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
     const double slope = (signals.speed[k + 1] - signals.speed[k]) / signals.period_s;
     for (int part = 0; part < parts; ++part) {
       const double motor = signals.speed[k] + slope * step * (part + 0.5);
-      const double moved = speed + step * pull_at(motor);
-      speed = moved > hold ? moved - hold : (moved < -hold ? moved + hold : 0.0);
+      const Sample moved = speed + step * pull_at(motor);
+      speed = moved - limited(moved, -hold, hold);
       twist += step * (motor - speed);
     }
   }
   return pulls;
 }
 
-VectorXd pull_of(const EffortRows& rows, const Load& load) {
-  VectorXd column(rows.w.size());
+/// The pulls of one load, or of several (see pulls_over), a column each.
+template <typename Sample>
+MatrixXd pulls_of(const EffortRows& rows, std::span<const Load> loads) {
+  MatrixXd columns(rows.w.size(), static_cast<Index>(loads.size()));
+  const bool is_rough = std::ranges::any_of(loads, [](const Load& one) { return one.gap > 0.0 || one.friction > 0.0; });
   for (const EffortSignals& signals : rows.signals) {
-    std::vector<double> pulls = pull_over(signals, load);
+    const std::vector<Sample> pulls = pulls_over<Sample>(signals, loads);
     // The coupling force of a free load is as smooth as the motion. With impacts or stiction it is not, so it gets the
     // same filter as the torque or force.
-    if (load.gap > 0.0 || load.friction > 0.0)
-      pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
-    for (std::size_t k = 0; k < signals.kept.size(); ++k)
-      column(static_cast<Index>(signals.first_row + k)) = pulls[signals.kept[k]];
+    std::vector<Sample> smooth;
+    if (is_rough)
+      smooth = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(std::span<const Sample>(pulls));
+    for (std::size_t k = 0; k < signals.kept.size(); ++k) {
+      const auto row = static_cast<Index>(signals.first_row + k);
+      for (std::size_t c = 0; c < loads.size(); ++c) {
+        const auto column = static_cast<Index>(c);
+        const bool filters = loads[c].gap > 0.0 || loads[c].friction > 0.0;
+        const Sample& sample = (filters ? smooth : pulls)[signals.kept[k]];
+        if constexpr (std::is_same_v<Sample, double>)
+          columns(row, column) = sample;
+        else
+          columns(row, column) = sample(column);
+      }
+    }
   }
-  return column;
+  return columns;
 }
 
-EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
-  EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
+EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit);
+
+/// The term of a load with this pull.
+EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit, MatrixXd pulls) {
+  EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", std::move(pulls), {1}, {}, {}};
   // A load that is held by its own friction acts as a hysteresis (a cable chain, a seal), and its mass does not matter.
   constexpr double kHeld = 0.7;  // of the RMS pull
   const double pull = std::sqrt(term.columns.squaredNorm() / static_cast<double>(term.columns.rows()));
@@ -148,6 +196,26 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   return term;
 }
 
+/// Loads that follow one another and can be integrated side by side.
+std::vector<std::span<const Load>> side_by_side(std::span<const Load> loads) {
+  std::vector<std::span<const Load>> groups;
+  for (std::size_t first = 0; first < loads.size();) {
+    const Load& load = loads[first];
+    std::size_t count = 1;
+    while (count < kSideBySide && first + count < loads.size() &&
+           loads[first + count].resonance_Hz == load.resonance_Hz &&
+           (loads[first + count].gap > 0.0) == (load.gap > 0.0))
+      ++count;
+    groups.push_back(loads.subspan(first, count));
+    first += count;
+  }
+  return groups;
+}
+
+EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
+  return term_of(rows, load, unit, pulls_of<double>(rows, {&load, 1}));
+}
+
 }  // namespace
 
 double least_gap(const sim::DataSheet& data) {
@@ -193,7 +261,13 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   }
   const char* const unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   std::vector<EffortTerm> terms(loads.size());
-  for_each_in_parallel(loads.size(), [&](std::size_t k) { terms[k] = term_of(rows, loads[k], unit); });
+  const std::vector<std::span<const Load>> groups = side_by_side(loads);
+  for_each_in_parallel(groups.size(), [&](std::size_t k) {
+    const MatrixXd pulls = pulls_of<EightSamples>(rows, groups[k]);
+    for (std::size_t c = 0; c < groups[k].size(); ++c)
+      terms[static_cast<std::size_t>(&groups[k][c] - loads.data())] =
+          term_of(rows, groups[k][c], unit, pulls.col(static_cast<Index>(c)));
+  });
   return terms;
 }
 

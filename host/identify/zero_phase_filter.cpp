@@ -49,40 +49,42 @@ ZeroPhaseLowPass::ZeroPhaseLowPass(std::span<const PolePair> poles, double cutof
   extension_ = static_cast<std::size_t>(std::ceil(periods * sample_rate_Hz / cutoff_Hz));
 }
 
-template <std::size_t count>
-void ZeroPhaseLowPass::cascade(std::vector<double>& signal) const {
+template <std::size_t count, typename Sample>
+void ZeroPhaseLowPass::cascade(std::vector<Sample>& signal) const {
   // Transposed direct form II, started in the steady state of the first sample. Every sample passes through all
   // sections before the next, because the processor overlaps the sections' recurrences.
   std::array<Section, count> sections;
-  std::array<double, count> first, second;
+  std::array<Sample, count> first, second;
   for (std::size_t k = 0; k < count; ++k) {
     sections[k] = sections_[k];
     first[k] = signal.front() * (1.0 - sections[k].b0);
     second[k] = signal.front() * (sections[k].b2 - sections[k].a2);
   }
-  for (double& sample : signal)
+  for (Sample& sample : signal)
     for (std::size_t k = 0; k < count; ++k) {
       const Section& s = sections[k];
-      const double out = s.b0 * sample + first[k];
+      const Sample out = s.b0 * sample + first[k];
       first[k] = s.b1 * sample - s.a1 * out + second[k];
       second[k] = s.b2 * sample - s.a2 * out;
       sample = out;
     }
 }
 
-void ZeroPhaseLowPass::run_once(std::vector<double>& signal) const {
+template <typename Sample>
+void ZeroPhaseLowPass::run_once(std::vector<Sample>& signal) const {
   if (sections_.size() == kButterworthSections)
     cascade<kButterworthSections>(signal);
   else
     cascade<kChebyshevSections>(signal);
 }
 
-std::vector<double> ZeroPhaseLowPass::operator()(std::span<const double> signal) const {
+template <typename Sample>
+std::vector<Sample> ZeroPhaseLowPass::filtered(std::span<const Sample> signal) const {
   throw_if_cancelled();  // the longest step of a comparison of a long record
   const std::size_t n = signal.size();
   if (n < 2) return {signal.begin(), signal.end()};
   const std::size_t margin = std::min(extension_, n - 1);
-  std::vector<double> extended(n + 2 * margin);
+  std::vector<Sample> extended(n + 2 * margin);
   for (std::size_t k = 0; k < margin; ++k) {
     extended[k] = 2.0 * signal[0] - signal[margin - k];
     extended[margin + n + k] = 2.0 * signal[n - 1] - signal[n - 2 - k];
@@ -95,6 +97,9 @@ std::vector<double> ZeroPhaseLowPass::operator()(std::span<const double> signal)
   const auto begin = extended.begin() + static_cast<std::ptrdiff_t>(margin);
   return {begin, begin + static_cast<std::ptrdiff_t>(n)};
 }
+
+template std::vector<double> ZeroPhaseLowPass::filtered(std::span<const double>) const;
+template std::vector<EightSamples> ZeroPhaseLowPass::filtered(std::span<const EightSamples>) const;
 
 double decimation_cutoff_Hz(std::size_t factor, double sample_rate_Hz) {
   constexpr double kPassband = 0.8;

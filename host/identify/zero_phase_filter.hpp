@@ -1,11 +1,15 @@
 // Low-pass filters without delay, applied forward and backward.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace host {
+
+/// One sample of each of eight signals. Their recurrences run side by side, which takes a third of the time.
+using EightSamples = Eigen::Array<double, 8, 1>;
 
 /// A low-pass applied in both directions, so that nothing is shifted in time. Each direction starts from the steady
 /// state of an odd extension of the signal, so that levels and ramps pass unchanged up to the ends. Cut-off in Hz, 0 <
@@ -20,7 +24,9 @@ class ZeroPhaseLowPass {
   static ZeroPhaseLowPass chebyshev(double cutoff_Hz, double sample_rate_Hz);
 
   /// Filtered signal of the same length. Any length.
-  std::vector<double> operator()(std::span<const double> signal) const;
+  std::vector<double> operator()(std::span<const double> signal) const { return filtered(signal); }
+  /// The same for eight signals.
+  std::vector<EightSamples> operator()(std::span<const EightSamples> signals) const { return filtered(signals); }
 
  private:
   struct Section {
@@ -30,9 +36,12 @@ class ZeroPhaseLowPass {
     double real, imaginary;  ///< of the analogue prototype with cut-off 1 rad/s, real < 0
   };
   ZeroPhaseLowPass(std::span<const PolePair> poles, double cutoff_Hz, double sample_rate_Hz);
-  void run_once(std::vector<double>& signal) const;
-  template <std::size_t count>
-  void cascade(std::vector<double>& signal) const;
+  template <typename Sample>
+  std::vector<Sample> filtered(std::span<const Sample> signal) const;
+  template <typename Sample>
+  void run_once(std::vector<Sample>& signal) const;
+  template <std::size_t count, typename Sample>
+  void cascade(std::vector<Sample>& signal) const;
 
   static constexpr std::size_t kButterworthSections = 2, kChebyshevSections = 4;  ///< of second order
 
