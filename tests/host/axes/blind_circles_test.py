@@ -289,7 +289,7 @@ def trial(seed: int, folder: Path) -> dict[str, object]:
 
 
 def main() -> int:
-    count, first = (int(given or default) for given, default in zip((sys.argv[1:] + [""] * 2)[:2], (10, 1)))
+    count, first = (int(given or default) for given, default in zip((sys.argv[1:] + [""] * 2)[:2], (6, 1)))
     with tempfile.TemporaryDirectory() as folder:
         all_of = [trial(seed, Path(folder)) for seed in range(first, first + count)]
     right = sum(one["right"] for one in all_of)
