@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "host/inner_products_kernel.hpp"
+
 namespace host {
 
 using Eigen::MatrixXd;
@@ -58,6 +60,21 @@ MatrixXd square_inverse(const MatrixXd& matrix) { return matrix.inverse(); }
 
 MatrixXd exponential(const MatrixXd& matrix) { return matrix.exp(); }
 
-MatrixXd gram(const MatrixXd& columns) { return columns.transpose() * columns; }
+struct Avx;
+struct AnyProcessor;
+extern template void inner_products<Avx>(const double*, std::size_t, std::size_t, double*);
+
+MatrixXd gram(const MatrixXd& columns) {
+#if defined(__x86_64__)
+  static const bool has_avx = __builtin_cpu_supports("avx") != 0;
+  const auto compute = has_avx ? &inner_products<Avx> : &inner_products<AnyProcessor>;
+#else
+  const auto compute = &inner_products<AnyProcessor>;
+#endif
+  MatrixXd products(columns.cols(), columns.cols());
+  compute(columns.data(), static_cast<std::size_t>(columns.rows()), static_cast<std::size_t>(columns.cols()),
+          products.data());
+  return products;
+}
 
 }  // namespace host

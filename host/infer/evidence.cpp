@@ -95,7 +95,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   fit.colour = start.colour;
   VectorXd unit_weights = VectorXd::Ones(n), factors;
   double square = -1.0, before = -HUGE_VAL;
-  MatrixXd gram;
+  MatrixXd products;
   VectorXd white_y, deviations_now;
   MatrixXd white;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -105,15 +105,13 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
       square = std::max(white_y.squaredNorm() / static_cast<double>(n) / 4.0, std::pow(least_noise_, 2));
     const VectorXd root = (unit_weights / square).cwiseSqrt();
     const MatrixXd weighed = root.asDiagonal() * white;
-    gram = MatrixXd::Zero(all.cols(), all.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(weighed.transpose());
-    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    products = gram(weighed);
     const VectorXd projection = weighed.transpose() * root.cwiseProduct(white_y);
     if (!start.hold_sizes)
       for (int step = 0; step < kSizesARound; ++step)
-        if (renew_sizes(memory_, known, gram, projection, deviations, fit.sizes) < 0.03) break;
+        if (renew_sizes(memory_, known, products, projection, deviations, fit.sizes) < 0.03) break;
     deviations_now = all_deviations(deviations, memory_, fit.sizes);
-    fit.information = information_of(gram, deviations_now);
+    fit.information = information_of(products, deviations_now);
     factors = deviations_now.cwiseProduct(fit.information.solve(deviations_now.cwiseProduct(projection)));
     fit.residual = white_y - white * factors;
     // Weights and scale of the t distribution alternately.
