@@ -48,7 +48,7 @@ install: ## Install program, Python package, manual, completions and udev rule b
 install-cpp: ## Install the library, its headers and its CMake package (find_package(axis)) below PREFIX
 	$(NEED) build
 	$(call configure,$(BUILD),-DCMAKE_INSTALL_PREFIX=$(PREFIX))
-	ninja -C $(BUILD) -j $(JOBS) axis_host
+	ninja -C $(BUILD) -j $(JOBS) axis_host axis_computing
 	cmake --install $(BUILD) --component development --prefix $(PREFIX)
 
 .PHONY: deb
