@@ -52,7 +52,7 @@ std::vector<Sample> pulls_over(const EffortSignals& signals, std::span<const Loa
     if constexpr (std::is_same_v<Sample, double>)
       return value(loads.front());
     else {
-      Sample values;
+      Sample values = Sample::Zero();
       for (std::size_t k = 0; k < kSideBySide; ++k)
         values(static_cast<Index>(k)) = value(loads[std::min(k, loads.size() - 1)]);
       return values;
@@ -197,8 +197,12 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit, M
 }
 
 /// Loads that follow one another and can be integrated side by side.
-std::vector<std::span<const Load>> side_by_side(std::span<const Load> loads) {
-  std::vector<std::span<const Load>> groups;
+struct Group {
+  std::size_t first, count;
+};
+
+std::vector<Group> side_by_side(const std::vector<Load>& loads) {
+  std::vector<Group> groups;
   for (std::size_t first = 0; first < loads.size();) {
     const Load& load = loads[first];
     std::size_t count = 1;
@@ -206,7 +210,7 @@ std::vector<std::span<const Load>> side_by_side(std::span<const Load> loads) {
            loads[first + count].resonance_Hz == load.resonance_Hz &&
            (loads[first + count].gap > 0.0) == (load.gap > 0.0))
       ++count;
-    groups.push_back(loads.subspan(first, count));
+    groups.push_back({first, count});
     first += count;
   }
   return groups;
@@ -261,12 +265,12 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   }
   const char* const unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   std::vector<EffortTerm> terms(loads.size());
-  const std::vector<std::span<const Load>> groups = side_by_side(loads);
+  const std::vector<Group> groups = side_by_side(loads);
   for_each_in_parallel(groups.size(), [&](std::size_t k) {
-    const MatrixXd pulls = pulls_of<EightSamples>(rows, groups[k]);
-    for (std::size_t c = 0; c < groups[k].size(); ++c)
-      terms[static_cast<std::size_t>(&groups[k][c] - loads.data())] =
-          term_of(rows, groups[k][c], unit, pulls.col(static_cast<Index>(c)));
+    const auto [first, count] = groups[k];
+    const MatrixXd pulls = pulls_of<EightSamples>(rows, std::span(loads).subspan(first, count));
+    for (std::size_t c = 0; c < count; ++c)
+      terms[first + c] = term_of(rows, loads[first + c], unit, pulls.col(static_cast<Index>(c)));
   });
   return terms;
 }
