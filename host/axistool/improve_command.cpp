@@ -73,7 +73,7 @@ void print(const host::Addition& addition, const std::string& kind, const std::s
 }
 
 void run_add(const InsightArguments& arguments, const std::string& kind, const std::string& over) {
-  host::known_effect(kind);
+  host::added_kinds(kind);
   const InsightRecords records(arguments);
   const host::Addition addition = host::add_kind(records.model, kind, over, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;
@@ -100,15 +100,18 @@ void add_improve(CLI::App& app) {
 void add_add(CLI::App& app) {
   auto arguments = std::make_shared<InsightArguments>();
   auto kind = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("add", "add one effect to a model and fit all parameters again");
+  CLI::App* command = app.add_subcommand("add", "add effects to a model and fit all parameters again");
   add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
-  command->add_option("kind", *kind, "effect to add; axistool effects lists them")->required();
+  command->add_option("kind", *kind, "effect to add, or several joined by +; axistool effects lists them")->required();
   add_input(*command, "--train", arguments->train, "training records")->required();
   add_input(*command, "--validate", arguments->validate, "validation records");
   add_output(*command, "-o,--output", arguments->output, "the new model")->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
-  command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
+  command->footer(
+      "Examples:\n"
+      "  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml\n"
+      "  axistool add x.toml backlash+cogging --train jog.csv --validate other.csv -o both.toml");
   auto over = std::make_shared<std::string>();
   command->add_option("--over", *over,
                       "coordinate of a free_curve; default: the one with the smallest validation error");

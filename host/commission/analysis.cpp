@@ -72,7 +72,7 @@ Measurements read_measurements(CommissionSession& session, const sim::DriveDescr
   std::vector<std::string> training = paths(session, kTrainingFiles);
   for (const auto& step : session.folder().document().at("steps"))
     for (const auto& file : step.at("files"))
-      if (const auto name = file.get<std::string>(); name.starts_with("run-") && name.ends_with(".csv"))
+      if (const auto name = file.get<std::string>(); is_planned_run(name))
         training.push_back(session.folder().path(name));
   return settled(model, training, paths(session, kJudgingFiles));
 }

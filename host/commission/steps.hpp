@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/commission/session.hpp"
@@ -90,6 +91,9 @@ CommissionStepResult write_page(CommissionSession& session);
 inline const std::vector<std::string> kTrainingFiles{"steps.csv", "ladder-slow.csv", "ladder-fast.csv",
                                                      "sweep.csv", "reversals.csv",   "dwell.csv"};
 inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-again.csv", "judge-steps.csv"};
+
+/// A record of a run that the step separate planned: further training.
+inline bool is_planned_run(std::string_view file) { return file.starts_with("run-") && file.ends_with(".csv"); }
 
 /// All training and validation records, checked by the gate, including the runs that separate explanations.
 Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);

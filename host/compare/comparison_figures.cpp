@@ -24,17 +24,24 @@
 namespace host {
 
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
-                           double window_s, const std::vector<std::string>& accepted) {
+                           double window_s, const std::vector<std::string>& accepted, const ShareDone& progress) {
   if (!(window_s > 0.0) || !std::isfinite(window_s))
     throw Failure(ExitCode::usage, fmt::format("window {}: expected a length in seconds above 0", window_s));
   Measurements measured = MeasurementGate(model, {.accepted = accepted, .as_logged = true}).admit(std::move(records));
   sim::DriveDescription completed = with_measured_sensors(model, measured);
   std::vector<FigureRecord> counted;
   for (const Record* record : measured.training_records()) counted.push_back({record});
-  throw_if_cancelled();
+  // Shares of the time of a record of ten million rows.
+  constexpr double kAdmitted = 0.3, kPrepared = 0.6;
+  const auto is_done = [&](double share) {
+    throw_if_cancelled();
+    if (progress) progress(share);
+  };
+  is_done(kAdmitted);
   RecordSet set = figure_set(model, counted, window_s);
-  throw_if_cancelled();
+  is_done(kPrepared);
   ModelComparison comparison = compare_model(completed, measured, set);
+  is_done(1.0);
   return {path, std::move(completed), std::move(measured), std::move(set), std::move(comparison)};
 }
 

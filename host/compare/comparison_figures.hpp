@@ -9,6 +9,7 @@
 #include "host/compare/focus.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/report/report.hpp"
+#include "host/share_done.hpp"
 
 namespace host {
 
@@ -27,7 +28,7 @@ struct ComparedModel {
 /// the model come from the records. Throws Failure(usage) for an invalid time, and what MeasurementGate, compare_on and
 /// compare_model throw.
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
-                           double window_s, const std::vector<std::string>& accepted);
+                           double window_s, const std::vector<std::string>& accepted, const ShareDone& progress = {});
 
 /// "axis-comparison/1" of one model; for several models, one per element of "models".
 nlohmann::json comparison_document(std::span<const ComparedModel> models);

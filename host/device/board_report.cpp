@@ -47,7 +47,11 @@ std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
 }
 
 std::string state_text(const firmware::AxisStatus& axis) {
-  return (axis.flags & firmware::kAxisFitted) != 0 ? nth(firmware::kStateNames, axis.state) : "not fitted";
+  std::string state = nth(firmware::kStateNames, axis.state);
+  if ((axis.flags & firmware::kAxisFitted) != 0) return state;
+  // An experiment moves it in open loop.
+  const bool is_on = firmware::outputs_are_on(static_cast<firmware::SupervisorState>(axis.state));
+  return is_on ? state + ", not fitted" : "not fitted";
 }
 
 std::string store_text(std::uint8_t store_state) {

@@ -2,19 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/evidence/log_faults.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/model/effect_forms.hpp"
 
 namespace host {
 
+std::vector<std::string> added_kinds(const std::string& kind) {
+  std::vector<std::string> kinds;
+  for (std::size_t begin = 0; begin <= kind.size(); begin += kinds.back().size() + 1) {
+    kinds.push_back(kind.substr(begin, kind.find('+', begin) - begin));
+    known_effect(kinds.back());
+  }
+  if (kinds.size() > 1 && std::ranges::find(kinds, "free_curve") != kinds.end())
+    throw Failure(ExitCode::usage, "add a free_curve alone: it can take the shape of any other effect");
+  return kinds;
+}
+
 Addition add_kind(const sim::DriveDescription& model, const std::string& kind, const std::string& over,
                   const Measurements& measured) {
+  const std::vector<std::string> kinds = added_kinds(kind);
   const bool curve = kind == "free_curve";
   if (!curve && !over.empty()) throw Failure(ExitCode::usage, "--over applies only to free_curve");
-  Addition addition = curve ? add_free_curve(model, over, measured) : add_effect(model, kind, measured);
+  Addition addition = curve ? add_free_curve(model, over, measured) : add_effects(model, kinds, measured);
   const JudgedCandidate& judged = addition.judged;
   if (!(judged.before > 0.0) || !std::isfinite(judged.before) || !std::isfinite(judged.after))
     throw Failure(ExitCode::refused,

@@ -63,6 +63,7 @@ void add_unexplained(Report& report, const Diagnosis& diagnosis) {
   for (ScatterSeries& curve : direction_curves(samples, samples.missing, over))
     if (!curve.x.empty()) plot.series.push_back(std::move(curve));
   if (plot.series.empty()) return;
+  show_means(plot);
   report.section("What is left");
   report.add(std::move(plot));
 }

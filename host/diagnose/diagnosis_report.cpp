@@ -59,13 +59,14 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
     block.sentences.push_back(fmt::format("{}{}.", ambiguous ? "If it is " : "", size_in_words(effect)));
   if (!found.empty()) block.sentences.push_back(errors_in_words(errors_of(diagnosis)));
   block.sentences.push_back(verdict.explanation);
-  block.sentences.emplace_back(kNoiseFloorMeans);
-  block.sentences.push_back("Next: " + verdict.next_experiment);
+  // Without a picture below it, the next experiment is what counts.
+  (found.empty() ? block.sentences : block.details).push_back("Next: " + verdict.next_experiment);
+  block.details.emplace_back(kNoiseFloorMeans);
   // An incomplete search does not matter if the named effects leave only noise.
   const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= kExplained;
   if (!diagnosis.not_searched.empty() && !is_explained)
-    block.sentences.push_back(fmt::format("Search incomplete (simulation budget exhausted) for: {}.",
-                                          fmt::join(diagnosis.not_searched, ", ")));
+    block.details.push_back(fmt::format("Search incomplete (simulation budget exhausted) for: {}.",
+                                        fmt::join(diagnosis.not_searched, ", ")));
   for (std::string& remedy : remedies(verdict.effects)) block.sentences.push_back(std::move(remedy));
   return block;
 }

@@ -128,16 +128,26 @@ Peak peak_of(const Curves& curves) {
   return peak;
 }
 
-/// Range of the means and the lines, with a margin. It ignores the spread of the samples in a bin, which could flatten
-/// all curves.
-std::pair<double, double> range_of_means(const ScatterPlot& plot) {
-  constexpr double kMargin = 0.25;
-  double low = 0.0, high = 0.0;
-  for (const ScatterSeries& series : plot.series)
-    for (const double value : series.y)
-      if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
-  const double margin = kMargin * (high - low);
-  return {low - margin, high + margin};
+/// Lowest and highest value of a curve. Of one with counts of samples, without the hundredth of the samples at either
+/// end: a bin of few samples may be far from all others.
+std::pair<double, double> usual_range(const ScatterSeries& series) {
+  constexpr double kLeftOut = 0.01;
+  std::vector<std::pair<double, double>> values;  // with their weights
+  double whole = 0.0;
+  for (std::size_t k = 0; k < series.y.size(); ++k) {
+    if (!std::isfinite(series.y[k])) continue;
+    values.emplace_back(series.y[k], series.samples.size() == series.y.size() ? series.samples[k] : 1.0);
+    whole += values.back().second;
+  }
+  if (values.empty()) return {0.0, 0.0};
+  std::ranges::sort(values);
+  if (series.samples.empty()) return {values.front().first, values.back().first};
+  const auto within = [&](auto begin, auto end) {
+    for (double sum = 0.0; begin != end; ++begin)
+      if ((sum += begin->second) > kLeftOut * whole) return begin->first;
+    return 0.0;
+  };
+  return {within(values.begin(), values.end()), within(values.rbegin(), values.rend())};
 }
 
 /// The largest encoder error over one period of the travel.
@@ -346,8 +356,20 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
     append_points(*effect.points, plot);
   else
     append_curves(effect.over, effect.without, effect.trace, plot);
-  if (const auto range = range_of_means(plot); range.first < range.second) plot.y_range = range;
+  show_means(plot);
   return plot;
+}
+
+void show_means(ScatterPlot& plot) {
+  constexpr double kMargin = 0.25;
+  double low = 0.0, high = 0.0;
+  for (const ScatterSeries& series : plot.series) {
+    const auto [least, most] = usual_range(series);
+    low = std::min(low, least);
+    high = std::max(high, most);
+  }
+  const double margin = kMargin * (high - low);
+  if (margin > 0.0) plot.y_range = {low - margin, high + margin};
 }
 
 }  // namespace host

@@ -55,4 +55,8 @@ double explained_share(const FoundEffect& effect);
 /// as points, forward and backward, and the effect's own part as lines.
 ScatterPlot effect_plot(const FoundEffect& effect);
 
+/// Sets the vertical range to that of the means and the lines, with a margin. The spread of the samples in a bin, and
+/// bins of few samples, could flatten all curves.
+void show_means(ScatterPlot& plot);
+
 }  // namespace host

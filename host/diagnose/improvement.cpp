@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "host/cancellation.hpp"
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/effect_by_motion.hpp"
@@ -259,10 +260,25 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   return addition;
 }
 
+/// One after the other, each fitted with those before it. Only the last model is compared with the given one, because
+/// some effects explain nothing without another.
+Addition effects_added(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                       const Measurements& measured) {
+  Addition addition = effect_added(model, kinds.front(), measured);
+  for (std::size_t k = 1; k < kinds.size(); ++k) {
+    const double before = addition.judged.before;
+    throw_if_cancelled();
+    addition = effect_added(addition.judged.model, kinds[k], measured);
+    addition.judged.before = before;
+  }
+  addition.judged.kinds = kinds;
+  return addition;
+}
+
 /// Applies `adding` to the model with the measured sensor noise; keeps the given data sheet.
-template <typename Adding>
-Addition on_measured_sensors(Adding adding, const sim::DriveDescription& model, const std::string& what,
-                             const Measurements& measured) {
+template <typename What>
+Addition on_measured_sensors(Addition adding(const sim::DriveDescription&, const What&, const Measurements&),
+                             const sim::DriveDescription& model, const What& what, const Measurements& measured) {
   Addition addition = adding(with_measured_sensors(model, measured), what, measured);
   addition.judged.model.data = model.data;
   const FigureRows rows = figure_rows(model, measured);
@@ -275,8 +291,9 @@ Addition on_measured_sensors(Adding adding, const sim::DriveDescription& model, 
 
 }  // namespace
 
-Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
-  return on_measured_sensors(effect_added, model, kind, measured);
+Addition add_effects(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                     const Measurements& measured) {
+  return on_measured_sensors(effects_added, model, kinds, measured);
 }
 
 Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured) {

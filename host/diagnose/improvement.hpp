@@ -38,18 +38,19 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
                     const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
                     int most_rungs = kMostRungs);
 
-/// The model with one effect added at its best fit, whether it is significant or not. Every parameter carries its 95 %
-/// interval and `from`. Throws Failure(usage) if the effect cannot be added to this model or does not show in these
+/// The model with effects added at their best fit, whether they are significant or not. Every parameter carries its 95
+/// % interval and `from`. Throws Failure(usage) if an effect cannot be added to this model or does not show in these
 /// records.
 struct Addition {
-  JudgedCandidate judged;
+  JudgedCandidate judged;  ///< its confidence is that of the last effect
   std::vector<ParameterEstimate> estimates;
   bool held_back = false;
-  ErrorOnSets given, error;  ///< of the given model, and with the effect
-  /// The model with the effect predicts held-back records worse, so the returned model is the given one.
+  ErrorOnSets given, error;  ///< of the given model, and with the effects
+  /// The model with the effects predicts held-back records worse, so the returned model is the given one.
   bool kept_given = false;
 };
-Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
+Addition add_effects(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                     const Measurements& measured);
 
 /// The model with a curve over a coordinate added. If `over` is empty, the coordinate with the smallest validation
 /// error is used. A curve can take any shape and gives no cause. Throws Failure(refused) if no curve lowers the error.

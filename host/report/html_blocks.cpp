@@ -77,6 +77,11 @@ std::string verdict(const Verdict& verdict) {
   if (verdict.headline.empty()) return "";
   std::string sentences;
   for (const std::string& sentence : verdict.sentences) sentences += element("p", sentence);
+  if (!verdict.details.empty()) {
+    sentences += "<div class=\"details\">\n";
+    for (const std::string& sentence : verdict.details) sentences += element("p", sentence);
+    sentences += "</div>\n";
+  }
   sentences += element("code", verdict.command);
   return fmt::format("<section class=\"verdict {}\" role=\"status\">\n{}{}{}</section>\n", tone_class(verdict.tone),
                      verdict.label.empty() ? "" : "<span class=\"badge\">" + escape_html(verdict.label) + "</span>\n",

@@ -176,7 +176,8 @@ std::string terminal_verdict(const Verdict& verdict, const Terminal& terminal) {
   std::string text;
   if (!verdict.label.empty()) text += coloured(verdict.label, verdict.tone, terminal) + "\n";
   text += wrapped(verdict.headline, terminal.columns);
-  for (const std::string& sentence : verdict.sentences) text += wrapped(sentence, terminal.columns, "  ");
+  for (const auto* sentences : {&verdict.sentences, &verdict.details})
+    for (const std::string& sentence : *sentences) text += wrapped(sentence, terminal.columns, "  ");
   if (!verdict.command.empty()) text += "  " + verdict.command + "\n";
   return text;
 }

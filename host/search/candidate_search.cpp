@@ -20,11 +20,6 @@
 
 namespace host {
 
-ShareDone part_of(const ShareDone& progress, double from, double to) {
-  if (!progress) return {};
-  return [progress, from, to](double share) { progress(from + share * (to - from)); };
-}
-
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model, const RecordSet& training,
                  const RecordSet& validation) {
   return {kinds, model, error_over_own_floors(model, training), error_over_own_floors(model, validation)};

@@ -1,13 +1,13 @@
 // Tries effects of the catalogue on a model: fits each with all parameters free and measures its gain.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "host/compare/comparison.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/fit/fit_budget.hpp"
+#include "host/share_done.hpp"
 #include "sim/effect.hpp"
 
 namespace host {
@@ -22,12 +22,6 @@ struct Candidate {
   /// Both sets count alike: a real effect predicts both better, a chance fit only one.
   double log_loss() const { return training.log_loss + validation.log_loss; }
 };
-
-/// Called from any thread with the finished share of the work, 0..1.
-using ShareDone = std::function<void(double)>;
-
-/// Maps the progress of one part of the work to the range `from` to `to`.
-ShareDone part_of(const ShareDone& progress, double from, double to);
 
 struct SearchEffort {
   WindowCounts windows = {};

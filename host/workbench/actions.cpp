@@ -43,8 +43,8 @@ void require_files(const Folder& folder, const Request& request) {
     for (const std::string& name : *names) folder.existing(name);
 }
 
-/// Also refuses records for which the page would wait too long.
-void require_comparable(const Folder& folder, const Request& request) {
+/// Refuses records for which the page would wait too long.
+void require_short(const Folder& folder, const Request& request) {
   require_files(folder, request);
   std::uintmax_t bytes = 0;
   for (const auto* names : {&request.train, &request.validate})
@@ -56,6 +56,30 @@ void require_comparable(const Folder& folder, const Request& request) {
                   "axistool cut {} --from S --to S -o PART.csv. Or run it in a shell: {}",
                   bytes * request.models.size() / kMebibyte, kComparedSize.of, kComparedSize.bytes / kMebibyte,
                   shell_word(request.train.front()), command_line(request, {})));
+}
+
+/// Shares of the time, by a record of ten million rows: of a model, reading its records; of all, everything but the
+/// page.
+constexpr double kRead = 0.3, kPredicted = 0.8;
+
+std::vector<ComparedModel> models_with_records(const Request& request, const ShareDone& progress) {
+  std::vector<ComparedModel> models;
+  for (const std::string& path : request.models) {
+    const auto share = [&](double part) {
+      return (static_cast<double>(models.size()) + part) / static_cast<double>(request.models.size());
+    };
+    std::vector<Record> records;
+    for (const std::string& record : request.train) {
+      records.push_back(read_record(record));
+      throw_if_cancelled();
+      const double read = static_cast<double>(records.size()) / static_cast<double>(request.train.size());
+      if (progress) progress(share(kRead * read));
+    }
+    models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted,
+                                  part_of(progress, share(kRead), share(1.0))));
+    throw_if_cancelled();
+  }
+  return models;
 }
 
 nlohmann::json identified(const Request& request, const Outputs& outputs) {
@@ -109,28 +133,26 @@ nlohmann::json improved(const Request& request, const sim::DriveDescription& mod
 }  // namespace
 
 std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request) {
-  require_comparable(folder, request);
-  std::vector<ComparedModel> models;
-  for (const std::string& path : request.models) {
-    std::vector<Record> records;
-    for (const std::string& record : request.train) records.push_back(read_record(record));
-    models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted));
-    throw_if_cancelled();
-  }
-  return models;
+  require_short(folder, request);
+  return models_with_records(request, {});
 }
 
-Comparison compare(const Folder& folder, const Request& request) {
-  require_comparable(folder, request);
+Comparison compare_all(const Folder& folder, const Request& request, const ShareDone& progress) {
+  require_files(folder, request);
   const sim::DriveDescription first = read_model(request.models.front());
   if (const std::vector<Record> tracks = tracking_records(request.train, first.data); !tracks.empty()) {
     std::vector<TrackingError> errors;
     for (const Record& record : tracks) errors.push_back(tracking_error(record));
     return {tracking_json(errors), "", tracking_text(errors), ""};
   }
-  const std::vector<ComparedModel> models = compared_models(folder, request);
+  const std::vector<ComparedModel> models = models_with_records(request, part_of(progress, 0.0, kPredicted));
   const std::size_t traces = record_in(request.focus, models.front().comparison);
   return {comparison_document(models), comparison_report(models, request.focus).html(), "", request.train[traces]};
+}
+
+Comparison compare(const Folder& folder, const Request& request) {
+  require_short(folder, request);
+  return compare_all(folder, request, {});
 }
 
 nlohmann::json look_alike(const Folder& folder, const Request& request) {
@@ -154,7 +176,7 @@ Comparison compare_trial(const Folder& folder, const Request& request) {
 
 nlohmann::json look_first(const Folder& folder, const Request& request) {
   if (!request.quick) throw Failure(ExitCode::usage, "request, \"quick\": expected true");
-  require_comparable(folder, request);
+  require_short(folder, request);
   for (const std::string& kind : request.absent) known_effect(kind);
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =
@@ -175,11 +197,11 @@ nlohmann::json gallery_picture(const std::string& kind) {
 }
 
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
-                         const std::function<void(double)>& progress) {
+                         const ShareDone& progress) {
   require_files(folder, request);
   if (request.task == Task::identify) return identified(request, outputs);
   for (const std::string& kind : request.absent) known_effect(kind);
-  if (request.task == Task::add) known_effect(request.kind);
+  if (request.task == Task::add) added_kinds(request.kind);
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =
       MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);

@@ -1,12 +1,12 @@
 // The page's actions. They use the functions of the commands, so documents are identical.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "host/input_limits.hpp"
+#include "host/share_done.hpp"
 #include "host/workbench/folder.hpp"
 #include "host/workbench/request.hpp"
 
@@ -30,8 +30,11 @@ struct Comparison {
 /// Compares the models of the request with its records. Throws as the command does.
 std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request);
 
-/// Throws as the command does.
+/// While the page waits, of at most kComparedSize. Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
+
+/// The same as a job, of any size. Throws as the command does, and Cancelled.
+Comparison compare_all(const Folder& folder, const Request& request, const ShareDone& progress);
 
 /// Effects whose part looks like the residual of the first model over the coordinate `like` (likeness_json). Throws as
 /// the command does.
@@ -52,7 +55,7 @@ nlohmann::json gallery_picture(const std::string& kind);
 /// Identifies, diagnoses, adds, adjusts or improves, writes the outputs, and returns the document of the command's
 /// --json. Throws as the command does, and Cancelled.
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
-                         const std::function<void(double)>& progress);
+                         const ShareDone& progress);
 
 /// Removes a time range: writes the parts before and after it as separate records, by `axistool cut`, and returns their
 /// names and the commands. Parts without enough rows are not written. Throws Failure(refused) if nothing remains.

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <system_error>
 
+#include "host/commission/steps.hpp"
 #include "host/exit_codes.hpp"
 #include "host/input_limits.hpp"
 
@@ -56,6 +57,17 @@ std::string kind_of(const fs::path& path) {
   return head.find("axis-record/1") != std::string::npos || head.starts_with("t_s,") ? "record" : "log";
 }
 
+/// "" if no commissioning recorded it.
+std::string role_of(const fs::path& record) {
+  std::error_code unreadable;
+  if (!fs::exists(record.parent_path() / "commission.json", unreadable)) return "";
+  const std::string name = record.filename().string();
+  const auto is_among = [&](const std::vector<std::string>& files) {
+    return std::ranges::find(files, name) != files.end();
+  };
+  return is_among(kJudgingFiles) ? "judge" : is_among(kTrainingFiles) || is_planned_run(name) ? "train" : "off";
+}
+
 }  // namespace
 
 bool is_plain_name(std::string_view name) {
@@ -87,7 +99,9 @@ std::vector<FolderFile> Folder::files() const {
     const fs::path real = fs::canonical(entry->path(), gone);
     if (gone || !is_inside(real, root_)) continue;
     std::string kind = kind_of(real);
-    if (!kind.empty()) found.push_back({name, std::move(kind), static_cast<std::size_t>(fs::file_size(real, gone))});
+    if (kind.empty()) continue;
+    std::string role = kind == "record" ? role_of(real) : "";
+    found.push_back({name, std::move(kind), static_cast<std::size_t>(fs::file_size(real, gone)), std::move(role)});
   }
   std::ranges::sort(found, {}, &FolderFile::name);
   return found;

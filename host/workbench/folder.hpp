@@ -22,6 +22,7 @@ struct FolderFile {
   std::string kind;  ///< "model", "sheet" (a data sheet, without effects), "record", "response" (JSON of `axistool
                      ///< bode`), or "log" of a layout that `axistool open` reads
   std::size_t bytes = 0;
+  std::string role = "";  ///< of a commissioning's record, "train", "judge" or "off": for what that run uses it
 };
 
 class Folder {

@@ -61,17 +61,20 @@ Jobs::Jobs(const Folder& folder, Commission commission) : folder_(folder), commi
   load();
   searcher_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::search); });
   fitter_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::fit); });
+  comparer_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::compare); });
   if (commission_) commissioner_ = std::jthread([this](const std::stop_token& stop) { work(stop, Lane::commission); });
 }
 
 Jobs::Lane Jobs::lane_of(Task task) {
   if (task == Task::commission) return Lane::commission;
+  if (task == Task::compare) return Lane::compare;
   return task == Task::diagnose || task == Task::improve ? Lane::search : Lane::fit;
 }
 
 Jobs::~Jobs() {
   searcher_.request_stop();
   fitter_.request_stop();
+  comparer_.request_stop();
   commissioner_.request_stop();
   const std::lock_guard lock(mutex_);
   for (const auto& item : jobs_) item.second->is_cancelled = true;
@@ -121,8 +124,9 @@ int Jobs::submit(const Request& wanted) {
   job->request = request;
   const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));
   job->outputs.json = folder_.own_file(stem + ".json");
-  if (lane_of(request.task) == Lane::search) job->outputs.report = folder_.own_file(stem + ".html");
-  if (request.task != Task::diagnose && !request.commission)
+  const Lane lane = lane_of(request.task);
+  if (lane == Lane::search || lane == Lane::compare) job->outputs.report = folder_.own_file(stem + ".html");
+  if (request.task == Task::improve || lane == Lane::fit)
     job->outputs.model = folder_.free_name(model_stem(request), ".toml");
   for (const auto& item : jobs_)  // a waiting job has no file yet
     if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)
@@ -162,8 +166,17 @@ void Jobs::work(const std::stop_token& stop, Lane lane) {
 }
 
 nlohmann::json Jobs::done(Job& job) {
-  if (!job.request.commission)
-    return carry_out(folder_, job.request, job.outputs, [&job](double share) { job.share = share; });
+  const ShareDone progress = [&job](double share) { job.share = share; };
+  if (job.request.task == Task::compare) {
+    Comparison compared = compare_all(folder_, job.request, progress);
+    if (!compared.report.empty()) write_file_atomically(job.outputs.report, compared.report);
+    const std::lock_guard lock(mutex_);
+    if (compared.report.empty()) job.state["report"] = "";
+    job.state["traces"] = std::move(compared.traces);
+    job.state["text"] = std::move(compared.text);
+    return std::move(compared.document);
+  }
+  if (!job.request.commission) return carry_out(folder_, job.request, job.outputs, progress);
   return commission_(job.request, [this, &job](double share, const std::string& what) {
     job.share = share;
     const std::lock_guard lock(mutex_);

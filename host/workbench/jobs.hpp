@@ -1,5 +1,6 @@
-// Long tasks with progress and cancellation: at a time one search, one fit and one commissioning. A job's state is in
-// workbench/0007.job.json and its results are beside that file, so that they survive a reload or a crash.
+// Long tasks with progress and cancellation: at a time one search, one fit, one comparison and one commissioning. A
+// job's state is in workbench/0007.job.json and its results are beside that file, so that they survive a reload or a
+// crash.
 #pragma once
 
 #include <atomic>
@@ -42,7 +43,8 @@ class Jobs {
 
   /// "axis-job/1": { "id", "request", "command", "state": "queued"|"running"|"done"|"failed"|"cancelled"|"interrupted",
   /// "share", "message", "model", "report", "next": step at
-  /// which a commissioning continues, "document": the command's --json }; empty if there is no such job.
+  /// which a commissioning continues, "traces", "text": as in Comparison, "document": the command's --json }; empty if
+  /// there is no such job.
   std::optional<nlohmann::json> state(int id) const;
 
   /// States, with documents, of the jobs that led to a model, in their order.
@@ -61,7 +63,7 @@ class Jobs {
   };
 
   /// What one thread does.
-  enum class Lane { search, fit, commission };
+  enum class Lane { search, fit, compare, commission };
 
   static Lane lane_of(Task task);
   void load();
@@ -78,7 +80,7 @@ class Jobs {
   std::condition_variable_any changed_;
   std::map<int, std::unique_ptr<Job>> jobs_;
   std::deque<int> queue_;
-  std::jthread searcher_, fitter_, commissioner_;  ///< last members, because they use the others
+  std::jthread searcher_, fitter_, comparer_, commissioner_;  ///< last members, because they use the others
 };
 
 }  // namespace host::workbench

@@ -63,17 +63,30 @@ PictureRequest parse_picture(std::string_view text) {
   return request;
 }
 
-std::shared_ptr<const RecordPicture> RecordPictures::of(const std::string& name) {
-  const FileStamp now = file_stamp(folder_.existing(name));
-  std::list<Known> dropped;  // destroyed after the lock is released, because that waits for the readers
-  const std::lock_guard lock(mutex_);
+std::shared_ptr<const RecordPicture> RecordPictures::known_as(const std::string& name, const FileStamp& stamp,
+                                                              std::list<Known>& dropped) {
   const auto found = std::ranges::find(known_, name, &Known::name);
-  if (found != known_.end() && found->picture->file().stamp() == now) {
+  if (found == known_.end()) return nullptr;
+  if (found->picture->file().stamp() == stamp) {
     known_.splice(known_.begin(), known_, found);
     return known_.front().picture;
   }
-  if (found != known_.end()) dropped.splice(dropped.end(), known_, found);
-  known_.push_front({name, std::make_shared<const RecordPicture>(name)});
+  dropped.splice(dropped.end(), known_, found);
+  return nullptr;
+}
+
+std::shared_ptr<const RecordPicture> RecordPictures::of(const std::string& name) {
+  const FileStamp now = file_stamp(folder_.existing(name));
+  std::list<Known> dropped;  // destroyed after the lock is released, because that waits for the readers
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto known = known_as(name, now, dropped)) return known;
+  }
+  // Opened without the lock: a slow file does not delay the pictures of others.
+  auto opened = std::make_shared<const RecordPicture>(name);
+  const std::lock_guard lock(mutex_);
+  if (auto known = known_as(name, now, dropped)) return known;  // another request was faster
+  known_.push_front({name, std::move(opened)});
   std::size_t bytes = known_.front().picture->bytes(), kept = 1;
   for (auto one = std::next(known_.begin()); one != known_.end();) {
     const auto here = one++;

@@ -55,6 +55,11 @@ class RecordPictures {
     std::shared_ptr<const RecordPicture> picture;
   };
 
+  /// The picture of the file with that stamp, now the latest; null if there is none. Moves one of an older file to
+  /// `dropped`. The caller holds the lock.
+  std::shared_ptr<const RecordPicture> known_as(const std::string& name, const FileStamp& stamp,
+                                                std::list<Known>& dropped);
+
   const Folder& folder_;
   std::mutex mutex_;
   std::list<Known> known_;  ///< latest first

@@ -29,6 +29,14 @@ std::string word_of(const std::string& text, const std::string& field) {
   return text;
 }
 
+/// Accepts an effect, or several joined by +.
+std::string kinds_of(const std::string& text) {
+  std::string words = text;
+  std::ranges::replace(words, '+', '_');
+  word_of(words, "kind");
+  return text;
+}
+
 /// Accepts a value such as "cogging.cosine_72=0.2".
 std::string value_of(const std::string& text, const std::string& field) {
   constexpr std::size_t kLongestValue = 120;
@@ -120,7 +128,7 @@ Request parse_request(std::string_view text) {
     request.train = list_of(document, "train", file_of);
     request.validate = list_of(document, "validate", file_of);
     request.absent = list_of(document, "absent", word_of);
-    request.kind = word_of(text_of(document, "kind"), "kind");
+    request.kind = kinds_of(text_of(document, "kind"));
     request.over = word_of(text_of(document, "over"), "over");
     request.values = list_of(document, "values", value_of);
     request.quick = flag_of(document, "quick");

@@ -124,7 +124,7 @@ struct Server::Parts {
   std::mutex comparing, looking, drawing, designing;
   RecordPictures pictures_of_records{folder};
   std::map<std::string, nlohmann::json> pictures;  ///< pictures of the gallery, by kind
-  std::atomic<bool> is_ending = false, has_ended = false, is_comparison_cancelled = false;
+  std::atomic<bool> is_ending = false, has_ended = false;
 
   using Handled = httplib::Server::HandlerResponse;
 
@@ -163,7 +163,7 @@ struct Server::Parts {
   void send_folder(Response& response) const {
     nlohmann::json files = nlohmann::json::array();
     for (const FolderFile& file : folder.files())
-      files.push_back({{"name", file.name}, {"kind", file.kind}, {"bytes", file.bytes}});
+      files.push_back({{"name", file.name}, {"kind", file.kind}, {"bytes", file.bytes}, {"role", file.role}});
     send(response, {{"folder", folder.root().string()},
                     {"files", std::move(files)},
                     {"choice", document_or_null(folder, std::string(kOwnFolder) + "/choice.json")}});
@@ -182,9 +182,8 @@ struct Server::Parts {
   void send_comparison(const Request& request, Response& response) {
     if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": expected compare");
     const std::lock_guard one_at_a_time(comparing);
-    is_comparison_cancelled = false;
-    if (is_ending) throw Cancelled();
-    const CancelledBy scope(&is_comparison_cancelled);
+    const CancelledBy scope(&is_ending);
+    throw_if_cancelled();
     send_compared(compare(folder, request), command_line(request, {}), response);
   }
 
@@ -234,7 +233,7 @@ struct Server::Parts {
   }
 
   void submit(Request request, Response& response) {
-    if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is not a job");
+    if (!request.like.empty()) throw Failure(ExitCode::usage, "request, \"like\": not for a job");
     if (request.commission) {
       board().require_command(request.commission->owner);
       request.commission->device = board().device();
@@ -291,10 +290,6 @@ struct Server::Parts {
          });
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
-    });
-    post("/api/compare/cancel", [this](const Query&, Response& response, const std::string&) {
-      is_comparison_cancelled = true;
-      send(response, nlohmann::json::object());
     });
     post("/api/like", [this](const Query&, Response& response, const std::string& body) {
       const Request request = parse_request(body);
@@ -455,7 +450,6 @@ void Server::run() {
 
 void Server::stop() {
   parts_->is_ending = true;
-  parts_->is_comparison_cancelled = true;
   // The library's stop() has no effect before the server runs, so it is repeated.
   for (bool is_told = false; !parts_->has_ended; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
     if (is_told || !parts_->http.is_running()) continue;

@@ -4,7 +4,7 @@ import { get, post, upload } from "./exchange.js";
 import { begin } from "./jobs.js";
 
 /** `accepted`: faults of the logs that the user has accepted on this page.
- * @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>, accepted: string[]}}
+ * @type {{folder: string, files: {name: string, kind: string, bytes: number, role: string}[], model: string|null, beside: string[], roles: Object<string, string>, accepted: string[]}}
  */
 export const choice = { folder: "", files: [], model: null, beside: [], roles: {}, accepted: [] };
 
@@ -30,10 +30,11 @@ export function chosenRecords() {
   return { train: recordsAs("train"), validate: recordsAs("judge") };
 }
 
-/** Initial roles: records beside the model are for training, or for validation if their name says so. */
+/** Initial roles: records beside the model are for training, or for validation if their name says so. Those of a
+ * commissioning have the roles that they had there. */
 function usualRole(name) {
   if (choice.model && folderOf(name) !== folderOf(choice.model)) return "off";
-  return isForJudging(name) ? "judge" : "train";
+  return choice.files.find((file) => file.name === name)?.role || (isForJudging(name) ? "judge" : "train");
 }
 
 export async function loadFolder() {
@@ -154,9 +155,19 @@ function recordRow(name) {
   return el("li", { className: "role-" + choice.roles[name] }, el("a", { className: "name", href: recordAddress(name), title: "Show its channels" }, name), select);
 }
 
+/** @param {string} name of a data sheet */
+const identify = (name) => begin({ do: "identify", model: name, train: recordsAs("train"), accept: choice.accepted });
+
 function sheetRow(name) {
-  const identify = () => begin({ do: "identify", model: name, train: recordsAs("train"), accept: choice.accepted });
-  return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: identify }, "Identify"));
+  return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: () => identify(name) }, "Identify"));
+}
+
+/** What is missing until a model can be compared, and the button of the next step. */
+export function firstSteps() {
+  const sheet = namesOf("sheet")[0], hasRecords = recordsAs("train").length > 0;
+  if (sheet && hasRecords) return el("p", {}, el("button", { type: "button", className: "primary", id: "identify", onclick: () => identify(sheet) }, "Identify a model of " + sheet), " Inertia and friction from the training records.");
+  const needs = namesOf("sheet").length ? "training records" : hasRecords ? "the drive's data sheet" : "training records and the drive's data sheet";
+  return el("p", { className: "lead" }, "A comparison needs a model. Drop one (.toml), or drop " + needs + ": a model is identified from them. The command axistool sheet makes a data sheet to fill in.");
 }
 
 /** Logs of one controller are opened together, because one log helps to recognise the channels of another.

@@ -1,8 +1,9 @@
 // How well the chosen models predict the chosen records, and where they fail.
-import { choice, latestCut, recordsAs, replaceRecord, takeBack } from "./choice.js";
+import { choice, firstSteps, latestCut, recordsAs, replaceRecord, takeBack } from "./choice.js";
 import { effects } from "./catalogue.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
 import { post } from "./exchange.js";
+import { compared } from "./jobs.js";
 import { firstLook, mostProbable } from "./look.js";
 import { plots, save } from "./plot_files.js";
 import { showPicture } from "./record.js";
@@ -33,7 +34,8 @@ function setButtons(again) {
  * @param {{focus?: any, onZoom?: (...words: any[]) => void, moreTools?: (figure: HTMLElement, plot: any) => HTMLElement[]}} [options]
  */
 export async function showComparison(place, models, records, options = {}) {
-  const told = await post("/api/compare", { do: "compare", models, records, accept: choice.accepted, ...options.focus });
+  const request = { do: "compare", models, records, accept: choice.accepted, ...options.focus };
+  const told = longestOf(records) ? await compared(request) : await post("/api/compare", request);
   return { told, show: () => drawComparison(place, told, options.onZoom, options.moreTools) };
 }
 
@@ -148,7 +150,7 @@ function likeTools(records) {
   };
 }
 
-/** Bytes of records whose comparison takes long enough that their channels are shown before it. */
+/** Bytes of records whose comparison takes so long that it is a job, and that their channels are shown before it. */
 const kLong = 16e6;
 
 /** The longest of the records, if their comparison takes long. */
@@ -185,14 +187,13 @@ export async function showCompare(place) {
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
-    place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A comparison needs a model: drop one (.toml), or identify one from training records and a data sheet on the left."));
+    place.replaceChildren(head, choice.model ? el("p", { className: "lead" }, "Choose records on the left, or drop them anywhere.") : firstSteps());
     return;
   }
   const long = longestOf(records);
   if (long) {
     forgetPlots();
-    const cancel = () => post("/api/compare/cancel", {}).catch((error) => notice(error.message));
-    showLong(place, head, el("div", { className: "progress" }, el("span", {}, "Predicting " + records.length + (records.length > 1 ? " records" : " record") + ". This takes some seconds for each million rows."), el("progress", { "aria-label": "Predicting" }), el("button", { type: "button", id: "cancel-compare", onclick: cancel }, "Cancel")), long);
+    showLong(place, head, el("p", { className: "soft", role: "status" }, "Long records: the comparison is a job, which takes some seconds for each million rows. Below, until then: the channels of the longest."), long);
   } else {
     place.classList.add("waiting");
     if (!place.querySelector(".blocks")) place.replaceChildren(head, el("p", { className: "soft" }, "Predicting…"));

@@ -14,7 +14,6 @@ import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
 const kShown = 0.01; // candidates with a smaller probability are collapsed
 const documents = new Map(); // of completed jobs, which do not change
 let catalogue = [];
-let next = []; // remaining kinds of a set, to add one after the other
 let shown = 0;
 
 async function documentOf(job) {
@@ -48,29 +47,26 @@ function searched() {
 }
 
 /**
- * @param {string} kind
+ * @param {string} kind one effect, or several joined by +
  * @param {string} [over] coordinate of a free curve
  */
 export function add(kind, over) {
   return begin({ ...request("add"), kind, ...(over ? { over } : {}) });
 }
 
-/** After a job has ended: selects the new model and adds the next effect of a set.
+/** After a job has ended: selects the new model.
  * @param {any[]} ended
  */
 export async function follow(ended) {
   for (const job of ended) {
     if (job.state === "failed") notice(job.message);
-    if (job.state !== "done") next = [];
     if (job.state !== "done" || !job.model || (job.request.do !== "identify" && job.request.model !== choice.model)) continue;
     if ((await documentOf(job)).kept === "given") {
-      next = [];
       notice("The addition predicts held-back records worse, so the model is unchanged.");
       continue;
     }
     await loadFolder();
     await workOn(job.model);
-    if (next.length) await add(next.shift());
   }
 }
 
@@ -93,7 +89,7 @@ async function ladder(place, steps) {
     const told = await documentOf(job);
     const row = (label, error) => ({ label, train: error.train.combined, validate: error.validate.combined });
     if (!rows.length) rows.push(row(job.request.model, told.error.given));
-    if (job.request.do === "add") rows.push(row("+ " + titleOf([job.request.kind]), told.error.after));
+    if (job.request.do === "add") rows.push(row("+ " + titleOf(job.request.kind.split("+")), told.error.after));
     else if (job.request.do === "adjust") rows.push(row("values set by hand", told.error.after));
     else for (const step of told.ladder.filter((one) => one.added.length)) rows.push(row("+ " + titleOf(step.added), step.error));
   }
@@ -119,24 +115,20 @@ async function fitted(steps) {
     if (told.parameters) parameters = told.parameters;
     const set = Object.fromEntries((job.request.values || []).map((text) => text.split("=")));
     parameters = parameters.map((one) => (one.name in set ? { ...one, value: Number(set[one.name]), determined: false } : one));
-    if (job.request.do === "add") added = [...added, job.request.kind];
+    if (job.request.do === "add") added = [...added, ...job.request.kind.split("+")];
   }
   return { parameters, added: parameters.filter((one) => added.includes(one.name.split(".")[0])) };
 }
 
 function card(candidate, told) {
   const info = catalogue.find((one) => one.kind === candidate.kinds.at(-1));
-  const click = () => {
-    next = candidate.kinds.slice(1);
-    add(candidate.kinds[0]);
-  };
   const found = told.verdict.effects.includes(candidate.kinds[0]) && candidate.kinds.every((kind) => told.verdict.effects.includes(kind));
   return el("li", { className: found ? "card found" : "card", "data-kinds": candidate.kinds.join(" ") },
     el("h3", {}, titleOf(candidate.kinds)), probabilityBar(candidate.probability),
     el("p", { className: "soft" }, "Held-back error " + short(candidate.before) + " → " + short(candidate.after) + " × noise floor" + (candidate.luck < 1 ? "; by chance with p = " + short(candidate.luck) : "")),
     el("p", {}, info ? info.shows.split(". ")[0] + "." : ""),
     candidate.confused_with.length ? el("p", { className: "soft" }, "Easily taken for: " + candidate.confused_with.map((kind) => titleOf([kind])).join(", ")) : null,
-    el("div", { className: "row" }, el("button", { type: "button", className: "primary", onclick: click }, "Add it"), el("a", { href: "#gallery/" + candidate.kinds.at(-1) }, "About it")));
+    el("div", { className: "row" }, el("button", { type: "button", className: "primary", onclick: () => add(candidate.kinds.join("+")) }, "Add it"), el("a", { href: "#gallery/" + candidate.kinds.at(-1) }, "About it")));
 }
 
 function plainCard(title, share, text, action = null) {
@@ -179,7 +171,7 @@ function explained(place, told, html, command, link) {
   const isFirst = (block) => block !== second && !(second && second.compareDocumentPosition(block) & Node.DOCUMENT_POSITION_FOLLOWING);
   return () => {
     place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
-    if (told.verdict.effects.length || told.verdict.coordinate) showBlocks(place, parts, isFirst);
+    showBlocks(place, parts, isFirst);
     place.append(...cards(told), commandLine(command), link);
     const more = el("details", {}, el("summary", {}, "Errors, residuals and traces"));
     more.addEventListener("toggle", () => more.children.length === 1 && showBlocks(more, parts, (block) => !isFirst(block)), { once: true });

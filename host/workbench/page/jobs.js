@@ -1,6 +1,6 @@
 // Starts, shows and cancels long jobs of the program. Their state is in the folder.
 import { commandLine, el, notice, percent } from "./elements.js";
-import { fileAddress, get, post } from "./exchange.js";
+import { fileAddress, get, post, report } from "./exchange.js";
 
 /** @type {any[]} latest first */
 export let jobs = [];
@@ -57,13 +57,46 @@ export function whole(job) {
   return get("/api/jobs/" + job.id);
 }
 
-const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", adjust: "Setting values", improve: "Adding significant effects", commission: "Commissioning" };
+/** The fields of a request in one order.
+ * @param {any} request
+ */
+const inOrder = (request) => JSON.stringify(Object.entries(JSON.parse(JSON.stringify(request))).sort());
+
+/** Comparisons that this tab has begun, also before a reload: it waits for and cancels no others. */
+const kBegun = "comparisons";
+const isBegunHere = (job) => (sessionStorage.getItem(kBegun) || "").split(" ").includes(String(job.id));
+
+/** The result of a long comparison, like that of /api/compare: of an earlier job, or of one that is begun. One that
+ * this tab waited for until now is cancelled.
+ * @param {any} request
+ */
+export async function compared(request) {
+  const words = inOrder(request), isThis = (job) => job.request.do === "compare" && inOrder(job.request) === words;
+  for (const job of jobs) if (isOpen(job) && job.request.do === "compare" && isBegunHere(job) && !isThis(job)) await cancel(job);
+  let id = jobs.find((job) => isThis(job) && (job.state === "done" || (isOpen(job) && isBegunHere(job))))?.id;
+  if (!id) {
+    id = (await post("/api/jobs", request)).id;
+    sessionStorage.setItem(kBegun, (sessionStorage.getItem(kBegun) || "") + " " + id);
+    await lookAtJobs();
+  }
+  const found = () => jobs.find((job) => job.id === id);
+  if (isOpen(found()))
+    await new Promise((resolve) => {
+      const leave = onJobs(() => isOpen(found()) || (leave(), resolve(null)));
+    });
+  const job = await whole(found());
+  if (job.state === "cancelled") throw new Error("cancelled");
+  if (job.state !== "done") throw Object.assign(new Error(job.message || job.state), { log: job.log });
+  return { ...job, report: job.report ? await report(job.report) : "" };
+}
+
+const kVerbs = { compare: "Comparing", identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", adjust: "Setting values", improve: "Adding significant effects", commission: "Commissioning" };
 
 /** @param {any} job */
 export function titleOf(job) {
   if (job.request.do === "commission") return kVerbs.commission + " axis " + job.request.axis + ": " + job.request.folder;
-  const kind = job.request.kind ? " " + job.request.kind.replaceAll("_", " ") : "";
-  return (kVerbs[job.request.do] || job.request.do) + kind + ": " + job.request.model;
+  const kind = job.request.kind ? " " + job.request.kind.replaceAll("_", " ").replaceAll("+", " + ") : "";
+  return (kVerbs[job.request.do] || job.request.do) + kind + ": " + (job.request.model || job.request.models.join(", "));
 }
 
 /** A progress bar for each running job. */

@@ -53,7 +53,7 @@ export function motionPanel(leaving) {
       where.textContent = (now.position === null ? "–" : now.position.toFixed(axis.unit === "m" ? 7 : 4) + " " + axis.unit) + (now.homing ? ", looks for home" : now.homed ? "" : " (not homed)");
       fault.textContent = now.fault ? now.fault.name + ": " + now.fault.cause + ". Remedy: " + now.fault.remedy + "." : "";
       enable.disabled = !commands() || now.state !== "ready";
-      disable.disabled = !commands() || !["enabled", "starting"].includes(now.state);
+      disable.disabled = !commands() || !/^(enabled|starting)/.test(now.state);
       moves.forEach((button) => (button.disabled = !commands() || !isEnabled));
       go.disabled = !commands() || !isEnabled || !now.homed || target.value === "";
     };

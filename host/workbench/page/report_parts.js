@@ -2,6 +2,17 @@
 import { axisTools } from "./plot_axes.js";
 import { fileTools, plots as plotScript } from "./plot_files.js";
 
+/** Shows the details of a verdict on demand, so that the picture below it is seen at once.
+ * @param {Element|null|undefined} details
+ */
+function fold(details) {
+  if (!details) return;
+  const folded = document.createElement("details"), summary = document.createElement("summary");
+  summary.textContent = "What to record next, and more";
+  details.replaceWith(folded);
+  folded.append(summary, ...details.children);
+}
+
 /**
  * @typedef {{verdict: Element|null, blocks: Element[], plots: any[]}} ReportParts
  * @param {string} html a report that the program wrote
@@ -9,9 +20,10 @@ import { fileTools, plots as plotScript } from "./plot_files.js";
  */
 export function partsOf(html) {
   const page = new DOMParser().parseFromString(html, "text/html");
-  const carried = page.getElementById("plots");
+  const carried = page.getElementById("plots"), verdict = page.querySelector("main > .verdict");
+  fold(verdict?.querySelector(".details"));
   return {
-    verdict: page.querySelector("main > .verdict"),
+    verdict,
     blocks: [...(page.querySelector("main > .blocks")?.children || [])],
     plots: carried ? JSON.parse(carried.textContent) : [],
   };

@@ -58,6 +58,19 @@ TEST(Folder, ListsWhatIsReadHereAndNothingThatLiesElsewhere) {
   EXPECT_EQ(code_of("../" + fs::current_path().filename().string() + "/validate.csv"), host::ExitCode::usage);
 }
 
+TEST(Folder, ACommissionsRecordsHaveTheRolesThatTheyHadThere) {
+  const WorkingFolder working;
+  fs::create_directory("x");
+  working.folder.write("x/commission.json", "{}");
+  for (const char* name : {"dwell.csv", "judge-jogs.csv", "pulse.csv", "run-1.csv"})
+    working.folder.write(std::string("x/") + name, "t_s,u_V,x_mm\n");
+  working.folder.write("dwell.csv", "t_s,u_V,x_mm\n");
+  std::vector<std::string> found;
+  for (const auto& file : Folder().files()) found.push_back(file.name + ":" + file.role);
+  EXPECT_THAT(found, testing::ElementsAre("dwell.csv:", "x/dwell.csv:train", "x/judge-jogs.csv:judge",
+                                          "x/pulse.csv:off", "x/run-1.csv:train"));
+}
+
 TEST(Folder, GivesAwayNothingByRequestEither) {
   const ServedFolder served;
   const TemporaryFolder elsewhere;

@@ -53,6 +53,27 @@ TEST(Jobs, AComparisonIsThatOfTheCommand) {
   }
 }
 
+TEST(Jobs, AComparisonAsAJobIsTheSameAndSharesNothingWithOthers) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const json request = {{"do", "compare"}, {"models", {"model.toml"}}, {"records", {"train-jog.csv", "validate.csv"}}};
+  const json at_once = served.post("/api/compare", request).second;
+  const int first = served.post("/api/jobs", request).second["id"];
+  const int other = served.post("/api/jobs", request).second["id"];
+  served.post("/api/jobs/" + std::to_string(other) + "/cancel", json::object());
+  const json state = served.ended(first);
+  ASSERT_EQ(state["state"], "done") << state;
+  EXPECT_EQ(state["document"], at_once["document"]);
+  EXPECT_EQ(state["document"], document_of(state["command"]));
+  EXPECT_EQ(state["traces"], at_once["traces"]);
+  EXPECT_EQ(host::read_file(state["report"].get<std::string>()), at_once["report"].get<std::string>());
+  EXPECT_EQ(state["model"], "");
+  EXPECT_NE(served.ended(other)["state"], "failed");
+  json like = request;
+  like["like"] = "speed";
+  EXPECT_EQ(served.post("/api/jobs", like).first, 400);
+}
+
 TEST(Jobs, AFirstLookIsThatOfTheQuickCommandAndNamesWhatCogs) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const ServedFolder served;

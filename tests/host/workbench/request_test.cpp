@@ -22,6 +22,9 @@ TEST(Request, BecomesTheCommandThatDoesTheSame) {
                                            "train":["r.csv","s.csv"],"validate":["v.csv"]})"),
                          {"b.toml", "j.json", ""}),
             "axistool add a.toml free_curve --train r.csv s.csv --validate v.csv --over speed -o b.toml --json j.json");
+  EXPECT_EQ(command_line(parse_request(R"({"do":"add","model":"a.toml","kind":"backlash+cogging","train":["r.csv"]})"),
+                         {"b.toml", "", ""}),
+            "axistool add a.toml backlash+cogging --train r.csv -o b.toml");
   EXPECT_EQ(command_line(parse_request(R"({"do":"diagnose","model":"a.toml","train":["r.csv"],"quick":true})"), {}),
             "axistool diagnose a.toml --quick --train r.csv");
   EXPECT_EQ(command_line(parse_request(R"({"do":"adjust","model":"a.toml","values":["cogging.cosine_72=-1e-3"],
