@@ -73,7 +73,7 @@ void print(const host::Addition& addition, const std::string& kind, const std::s
 }
 
 void run_add(const InsightArguments& arguments, const std::string& kind, const std::string& over) {
-  host::added_kinds(kind);
+  for (const std::string& one : host::added_kinds(kind)) host::known_effect(one);
   const InsightRecords records(arguments);
   const host::Addition addition = host::add_kind(records.model, kind, over, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;

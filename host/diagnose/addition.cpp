@@ -8,16 +8,13 @@
 #include "host/evidence/log_faults.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/plausibility.hpp"
-#include "host/model/effect_forms.hpp"
 
 namespace host {
 
 std::vector<std::string> added_kinds(const std::string& kind) {
   std::vector<std::string> kinds;
-  for (std::size_t begin = 0; begin <= kind.size(); begin += kinds.back().size() + 1) {
+  for (std::size_t begin = 0; begin <= kind.size(); begin += kinds.back().size() + 1)
     kinds.push_back(kind.substr(begin, kind.find('+', begin) - begin));
-    known_effect(kinds.back());
-  }
   if (kinds.size() > 1 && std::ranges::find(kinds, "free_curve") != kinds.end())
     throw Failure(ExitCode::usage, "add a free_curve alone: it can take the shape of any other effect");
   return kinds;

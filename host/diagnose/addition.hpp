@@ -9,8 +9,7 @@
 
 namespace host {
 
-/// The effects of "cogging" or "backlash+cogging". Throws Failure(usage) for an unknown one, and for a free curve with
-/// others.
+/// The effects of "cogging" or "backlash+cogging", known or not. Throws Failure(usage) for a free curve with others.
 std::vector<std::string> added_kinds(const std::string& kind);
 
 /// Calls add_free_curve() if `kind` is "free_curve", otherwise add_effects() with added_kinds(). Only a free curve

@@ -140,7 +140,7 @@ Answer add(const py::object& model, const std::string& kind, const py::sequence&
            const std::string& over) {
   const Question asked(model, train, validate, {}, {}, {});
   return result_of(py::none(), "add", [&](const auto&) {
-    host::added_kinds(kind);
+    for (const std::string& one : host::added_kinds(kind)) host::known_effect(one);
     const sim::DriveDescription drive = asked.drive();
     const host::Measurements measured = asked.measurements(drive);
     const host::Addition addition = host::add_kind(drive, kind, over, measured);

@@ -4,9 +4,9 @@
   "use strict";
 
   const GAP = 0xffffff;
-  // Number of intervals drawn in the visible range, several for each pixel of a wide screen. All samples are kept, so
-  // zooming in shows every one of them.
+  // Most intervals drawn in the visible range. All samples are kept, so zooming in shows every one of them.
   const VISIBLE_STRETCHES = 1500;
+  const PIXELS_OF_A_STRETCH = 2; // its lowest and highest value have two places
   const HIDDEN_STRETCHES = 200;
   const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
   const charts = [];
@@ -71,12 +71,13 @@
 
   // Rows for dygraphs: fine inside the window, coarse outside, so that the whole range can be shown after a reset of
   // the zoom.
-  function drawnRows(x, columns, window) {
+  function drawnRows(x, columns, window, width) {
     const from = window ? Math.max(0, firstRowFrom(x, window[0]) - 1) : 0;
     const to = window ? Math.min(x.length, firstRowFrom(x, window[1]) + 1) : x.length;
     const rows = [];
     pushExtremes(columns, 0, from, HIDDEN_STRETCHES, rows);
-    pushExtremes(columns, from, to, VISIBLE_STRETCHES, rows);
+    const stretches = Math.ceil((width * devicePixelRatio) / PIXELS_OF_A_STRETCH);
+    pushExtremes(columns, from, to, Math.min(VISIBLE_STRETCHES, Math.max(HIDDEN_STRETCHES, stretches)), rows);
     pushExtremes(columns, to, x.length, HIDDEN_STRETCHES, rows);
     return rows.map((row) => [x[row], ...columns.map((column) => column[row])]);
   }
@@ -268,10 +269,10 @@
       clearTimeout(timer);
       timer = setTimeout(function () {
         drawnWindow = window;
-        chart.updateOptions({ file: drawnRows(x, columns, window) });
+        chart.updateOptions({ file: drawnRows(x, columns, window, elements.canvas.clientWidth) });
       }, 30);
     };
-    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), plot, panel, elements.legend);
+    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null, elements.canvas.clientWidth), options), plot, panel, elements.legend);
   }
 
   function drawTimePlot(frame, plot) {

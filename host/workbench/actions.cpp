@@ -201,7 +201,8 @@ nlohmann::json carry_out(const Folder& folder, const Request& request, const Out
   require_files(folder, request);
   if (request.task == Task::identify) return identified(request, outputs);
   for (const std::string& kind : request.absent) known_effect(kind);
-  if (request.task == Task::add) added_kinds(request.kind);
+  if (request.task == Task::add)
+    for (const std::string& kind : added_kinds(request.kind)) known_effect(kind);
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =
       MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);

@@ -54,10 +54,11 @@ export function add(kind, over) {
   return begin({ ...request("add"), kind, ...(over ? { over } : {}) });
 }
 
-/** After a job has ended: selects the new model.
+/** After a job has ended: selects the new model. Returns whether the views have been drawn again.
  * @param {any[]} ended
  */
 export async function follow(ended) {
+  let isDrawn = false;
   for (const job of ended) {
     if (job.state === "failed") notice(job.message);
     if (job.state !== "done" || !job.model || (job.request.do !== "identify" && job.request.model !== choice.model)) continue;
@@ -67,7 +68,9 @@ export async function follow(ended) {
     }
     await loadFolder();
     await workOn(job.model);
+    isDrawn = true;
   }
+  return isDrawn;
 }
 
 function undo() {
@@ -189,6 +192,23 @@ function head() {
     : "Choose a model and at least one training record.")];
 }
 
+/** Calls it once the page is on the screen: the program's computing takes all processors.
+ * @param {() => void} work
+ */
+const afterPainting = (work) => requestAnimationFrame(() => setTimeout(work));
+
+/** Shows what the force balance alone says, if it says anything.
+ * @param {Element} found
+ * @param {any} asked the search that is under way, if any
+ */
+async function look(found, asked) {
+  const told = await firstLook();
+  if (!told) return found.remove();
+  if (!found.isConnected) return;
+  found.replaceChildren(el("p", { className: "lead" }, asked ? "First look, by the force balance alone; the search by motion is under way." : "First look, by the force balance alone. “Find the missing effect” searches the motion too."));
+  explained(found, told.document, told.report, told.command, "")();
+}
+
 /**
  * @param {Element} place
  * @param {string} [wish] "find": starts the search unless there is a result
@@ -197,8 +217,7 @@ export async function showEffects(place, wish) {
   const mine = ++shown;
   if (wish === "find") history.replaceState(null, "", "#effects");
   catalogue = await effects();
-  const look = searched()?.state === "done" || searched()?.state === "failed" ? null : firstLook();
-  if (wish === "find" && !searched() && choice.model && chosenRecords().train.length) look?.finally(() => begin(request("diagnose")));
+  const isFind = wish === "find" && !searched() && choice.model && chosenRecords().train.length;
   const body = el("div"), steps = stepsTo(choice.model), draw = [];
   try {
     if (steps.length) {
@@ -216,13 +235,11 @@ export async function showEffects(place, wish) {
       body.prepend(found);
       if (steps.length) body.append(found);
       draw.push(await diagnosis(found, asked));
-    } else if (look) {
+    } else if (asked?.state !== "failed") {
       const found = el("div", { id: "diagnosis", className: "first-look" }, el("p", { className: "lead" }, "Looking at the force balance…"));
-      if (steps.length) body.append(found);
-      else body.prepend(found);
-      look.then((told) => told && found.isConnected && (found.replaceChildren(el("p", { className: "lead" }, asked ? "First look, by the force balance alone; the search by motion is under way." : "First look, by the force balance alone. “Find the missing effect” searches the motion too.")), explained(found, told.document, told.report, told.command, "")()));
-      look.then((told) => told || found.remove());
-    } else if (asked?.state === "failed")
+      body.append(found);
+      draw.push(() => afterPainting(() => look(found, asked).finally(() => isFind && begin(request("diagnose")))));
+    } else
       body.append(errorBox(Object.assign(new Error(asked.message), { log: asked.log }), (words) => (choice.accepted.push(...words), begin(request("diagnose")))));
   } catch (error) {
     body.append(errorBox(error));

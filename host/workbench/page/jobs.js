@@ -31,7 +31,7 @@ export async function lookAtJobs() {
   const ended = jobs.filter((job) => !isOpen(job) && !known.has(job.id));
   endedBefore = new Set(jobs.filter((job) => !isOpen(job)).map((job) => job.id));
   listeners.forEach((listener) => listener(ended));
-  if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, 500);
+  if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, 150);
 }
 
 /** @param {any} request */

@@ -67,8 +67,8 @@ async function start() {
   onChoice(() => !["jobs", "open", "live", "record"].some(isShown) && show());
   onJobs(async (ended) => {
     progress.replaceChildren(...progressBars());
-    await follow(ended);
-    if (isShown("jobs") || (ended.length && isShown("effects"))) show();
+    const isDrawn = await follow(ended);
+    if (isShown("jobs") || (ended.length && !isDrawn && isShown("effects"))) show();
     if (ended.length) await loadFolder();
   });
   window.addEventListener("hashchange", goTo);

@@ -73,8 +73,23 @@ export function showBlocks(place, parts, wanted = () => true, onZoom, moreTools 
     frame.removeAttribute("id");
     frame.closest("figure").prepend(fileTools(frame.closest("figure"), plots.at(-1)));
   }
-  drawn.push({ box, forget: plotScript().draw(plots, frames, onZoom) });
-  frames.forEach((frame, k) => frame.closest("figure").querySelector(".tools").prepend(...moreTools(frame.closest("figure"), plots[k]), ...axisTools(frame, plots[k])));
+  const show = (/** @type {number} */ k) => {
+    drawn.push({ box: frames[k], forget: plotScript().draw([plots[k]], [frames[k]], onZoom) });
+    const figure = frames[k].closest("figure");
+    figure.querySelector(".tools").prepend(...moreTools(figure, plots[k]), ...axisTools(frames[k], plots[k]));
+  };
+  // The first picture is on the screen before the others are drawn. A page that is scrolled keeps its place.
+  const from = window.scrollY > 0 ? frames.length : 1;
+  frames.slice(0, from).forEach((_, k) => show(k));
+  const next = (/** @type {number} */ k) => {
+    if (k >= frames.length) return;
+    setTimeout(() => {
+      if (!box.isConnected) return;
+      show(k);
+      next(k + 1);
+    });
+  };
+  requestAnimationFrame(() => next(from));
   return box;
 }
 

@@ -2,6 +2,8 @@
 // for every new one; here memory does not grow.
 
 const kLane = 84, kFoot = 26, kLeft = 74;
+/** Width of a bucket from which a line joins its middle to the next. */
+const kWidePixels = 3;
 
 const short = (value) => (isFinite(value) ? String(Number(value.toPrecision(4))) : "–");
 
@@ -103,6 +105,32 @@ export class Scope {
     });
   }
 
+  /** Draws narrow buckets as upright bars on whole pixels, each joined to the one before it. A stroke would take the
+   * browser ten times as long.
+   * @param {CanvasRenderingContext2D} context
+   * @param {number} channel
+   * @param {number} first bucket
+   * @param {number} last bucket
+   * @param {(row: number) => number} x
+   * @param {(value: number) => number} y
+   */
+  fillBars(context, channel, first, last, x, y) {
+    const low = this.low[channel], high = this.high[channel];
+    let before = -1;
+    for (let number = first; number < last; number++) {
+      const place = number % this.room;
+      if (this.number[place] !== number || !this.taken[place] || isNaN(low[place])) {
+        before = -1;
+        continue;
+      }
+      const top = Math.round(y(before < 0 ? high[place] : Math.max(high[place], low[before])));
+      const bottom = Math.round(y(before < 0 ? low[place] : Math.min(low[place], high[before])));
+      const left = Math.round(x(number * this.rows));
+      context.fillRect(left, top, Math.max(1, Math.round(x((number + 1) * this.rows)) - left), bottom - top + 1);
+      before = place;
+    }
+  }
+
   draw() {
     const canvas = this.canvas, scale = devicePixelRatio || 1, lanes = this.stream.names.length;
     const width = canvas.clientWidth, height = lanes * kLane + kFoot;
@@ -149,6 +177,11 @@ export class Scope {
       context.fillText(short(most), kLeft - 6, top + 4);
       context.fillText(short(least), kLeft - 6, bottom + 4);
       const range = most - least || 1, y = (value) => bottom - ((value - least) / range) * (bottom - top);
+      if (x(this.rows) - x(0) < kWidePixels) {
+        context.fillStyle = colour("--model");
+        this.fillBars(context, channel, first, last, x, y);
+        continue;
+      }
       context.strokeStyle = colour("--model");
       context.lineWidth = 1.2;
       context.beginPath();

@@ -387,6 +387,54 @@ class Workbench(ServedPage, unittest.TestCase):
         self.keep_on_phone("phone-record")
         self.quiet()
 
+    def test_a_long_comparison_is_a_job_of_one_page(self) -> None:
+        browser = self.browser
+        self.until("#content .verdict")
+        lines = (self.folder / "validate.csv").read_text().splitlines()
+        head = next(k for k, line in enumerate(lines) if line.startswith("t_s")) + 1
+        rows = [line.split(",") for line in lines[head:]]
+        shift = float(rows[-1][2]) - float(rows[0][2])
+        with open(self.folder / "long.csv", "w") as file:
+            file.write("\n".join(lines[:head]) + "\n")
+            for tile in range(700_000 // len(rows)):
+                file.writelines(f"{(tile * len(rows) + k) / 1000:.3f},{row[1]},{float(row[2]) + tile * shift:.5f},{row[3]}\n" for k, row in enumerate(rows))
+        (self.folder / "workbench").mkdir(exist_ok=True)
+        (self.folder / "workbench/choice.json").write_text(json.dumps({"model": "model.toml", "beside": [], "roles": {"long.csv": "train", "train-jog.csv": "off", "validate.csv": "off"}}))
+
+        def states() -> list[str]:
+            return [json.loads(path.read_text())["state"] for path in sorted(self.folder.glob("workbench/*.job.json"))]
+
+        def become(*wanted: str) -> None:
+            WebDriverWait(browser, PATIENCE_S, 0.05).until(lambda _: states() == list(wanted), f"{wanted}, not {states()}")
+
+        browser.refresh()
+        self.until(".progress progress[value]")
+        self.until("canvas.scope")
+        browser.refresh()
+        self.until(".progress progress")
+        self.assertEqual(states(), ["running"], "a reload begins no other one")
+        # Another page, which this one does not know, begins the same and cancels it.
+        browser.execute_async_script("""
+            const done = arguments[0], post = (path, text) => fetch(path, { method: "POST", body: text }).then((answer) => answer.json());
+            post("/api/jobs", JSON.stringify({ do: "compare", models: ["model.toml"], records: ["long.csv"] })).then((told) => post("/api/jobs/" + told.id + "/cancel", "{}")).then(done);""")
+        become("running", "cancelled")
+        self.until("#content .blocks canvas")
+        become("done", "cancelled")
+        command = next(text for text in self.texts(".command code") if text.startswith("axistool compare")).split(" --report")[0]
+        told = json.loads((self.folder / "workbench/0001-compare.json").read_text())
+        self.assertIn(f"{told['combined']:.3g} times the noise floor", " ".join(self.texts("#content .verdict")))
+        self.assertTrue(command.endswith("--json workbench/0001-compare.json"), command)
+        browser.refresh()
+        self.until("#content .blocks canvas")
+        self.assertEqual(states(), ["done", "cancelled"], "a result is kept")
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Map up'] option[value=acceleration]").click()
+        become("done", "cancelled", "running")
+        self.click("#progress-3 button")
+        become("done", "cancelled", "cancelled")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "cancelled" in " ".join(self.texts("#content [role=status]")))
+        self.keep("long-compared")
+        self.quiet()
+
     def test_file_names_are_text(self) -> None:
         name = "<img src=x onerror=alert(1)>.csv"
         self.until("#content .verdict")  # the first page has no request in progress that would lack its cookie
