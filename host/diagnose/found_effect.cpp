@@ -54,6 +54,19 @@ double carried_share(const ResidualEffort& samples, const Values& trace, const R
   return carried / sum_of_squares(trace);
 }
 
+/// The period over which a ripple is drawn: its own, but that of its strongest order if this is so fine that the whole
+/// period would have too few bins for each ripple. 0 if there is none.
+double drawn_period(const sim::EffectEntry& entry) {
+  constexpr double kFinestOrder = 8.0;
+  if (!entry.has("period")) return 0.0;
+  const std::vector<sim::HarmonicTerm> terms =
+      entry.has_any("cosine") ? sim::harmonics_of(entry) : std::vector<sim::HarmonicTerm>{};
+  const auto strongest = std::ranges::max_element(
+      terms, {}, [](const sim::HarmonicTerm& term) { return std::hypot(term.cosine, term.sine); });
+  const bool is_fine = strongest != terms.end() && strongest->order > kFinestOrder;
+  return entry.at("period") / (is_fine ? strongest->order : 1.0);
+}
+
 /// Coordinates over which the trace may show: those of the catalogue, with the period of a ripple; for a free curve its
 /// own coordinate.
 std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, const sim::EffectEntry& entry,
@@ -65,11 +78,11 @@ std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, cons
     if (name == "friction_along_position") name = "position";
     if (name == "friction_over_time") name = "time";
     if (name == "frequency") continue;  // no coordinate of a sample
-    ResidualCoordinate over = coordinate_of(name, kind, entry.has("period") ? entry.at("period") : 0.0);
+    ResidualCoordinate over = coordinate_of(name, kind, drawn_period(entry));
     if ((samples.*over.along).size() != samples.w.size()) continue;
     if (over.period > 0.0) {
       const auto [low, high] = std::ranges::minmax_element(samples.x);
-      over.folded = *high - *low > 2.0 * entry.at("period");
+      over.folded = *high - *low > 2.0 * drawn_period(entry);
       if (over.folded) over.axis.quantity = fmt::format("position within {:.4g} mm", over.period);
     }
     all.push_back(std::move(over));

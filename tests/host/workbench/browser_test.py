@@ -422,7 +422,8 @@ class Workbench(ServedPage, unittest.TestCase):
         become("done", "cancelled")
         command = next(text for text in self.texts(".command code") if text.startswith("axistool compare")).split(" --report")[0]
         told = json.loads((self.folder / "workbench/0001-compare.json").read_text())
-        self.assertIn(f"{told['combined']:.3g} times the noise floor", " ".join(self.texts("#content .verdict")))
+        error = f"{told['combined']:#.3g}".rstrip(".")
+        self.assertIn(f"{error} times the noise floor", " ".join(self.texts("#content .verdict")))
         self.assertTrue(command.endswith("--json workbench/0001-compare.json"), command)
         browser.refresh()
         self.until("#content .blocks canvas")
