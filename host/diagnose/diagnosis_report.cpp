@@ -52,15 +52,16 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
       block.headline = "The axis moved too little for a diagnosis";
       break;
   }
-  for (const LogFault& fault : diagnosis.log)
-    block.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
   const bool ambiguous = verdict.status == Status::ambiguous;
   for (const FoundEffect& effect : found)
     block.sentences.push_back(fmt::format("{}{}.", ambiguous ? "If it is " : "", size_in_words(effect)));
   if (!found.empty()) block.sentences.push_back(errors_in_words(errors_of(diagnosis)));
   block.sentences.push_back(verdict.explanation);
-  // Without a picture below it, the next experiment is what counts.
-  (found.empty() ? block.sentences : block.details).push_back("Next: " + verdict.next_experiment);
+  // Without a picture below it, these are what counts.
+  std::vector<std::string>& later = found.empty() ? block.sentences : block.details;
+  later.push_back("Next: " + verdict.next_experiment);
+  for (const LogFault& fault : diagnosis.log)
+    later.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
   block.details.emplace_back(kNoiseFloorMeans);
   // An incomplete search does not matter if the named effects leave only noise.
   const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= kExplained;
