@@ -428,11 +428,6 @@ class Workbench(ServedPage, unittest.TestCase):
         browser.refresh()
         self.until("#content .blocks canvas")
         self.assertEqual(states(), ["done", "cancelled"], "a result is kept")
-        browser.find_element(By.CSS_SELECTOR, "[aria-label='Map up'] option[value=acceleration]").click()
-        become("done", "cancelled", "running")
-        self.click("#progress-3 button")
-        become("done", "cancelled", "cancelled")
-        WebDriverWait(browser, PATIENCE_S).until(lambda _: "cancelled" in " ".join(self.texts("#content [role=status]")))
         self.keep("long-compared")
         self.quiet()
 
