@@ -25,6 +25,11 @@ std::vector<double> gains_of(const std::vector<double>& before, const std::vecto
 
 }  // namespace
 
+std::size_t windows_in(double span_s, const RecordSet& set) {
+  return std::max<std::size_t>(1,
+                               static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
+}
+
 double confidence_of_improvement(const std::vector<double>& before, const std::vector<double>& after,
                                  std::size_t block) {
   const std::vector<double> gains = gains_of(before, after, block);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "host/evidence/prepared_record.hpp"
+#include "host/compare/comparison.hpp"
 
 namespace host {
 
@@ -16,6 +16,12 @@ double confidence_of_improvement(const std::vector<double>& before, const std::v
 
 /// Length of independent blocks, s. Each prediction restarts from the measurement, so errors do not carry over.
 inline constexpr double kLuckBlock_s = kWindow_s;
+
+/// Largest p-value of an improvement that is claimed.
+inline constexpr double kMostLuck = 0.05;
+
+/// Number of windows of a set in `span_s` of motion, at least 1.
+std::size_t windows_in(double span_s, const RecordSet& set);
 
 /// p-value of the best of `tried` candidates: probability of a gain as large as that of `after` by chance.
 /// Randomisation test over the signs of the blocks' gains, times the number of candidates tried (Bonferroni), at most

@@ -10,9 +10,6 @@
 
 namespace host {
 
-/// Largest p-value of an improvement that is claimed.
-inline constexpr double kMostLuck = 0.05;
-
 /// By chance, the best of all candidates lowers the error of a complete model by up to 1.6 %; a gain below 5 % is never
 /// claimed.
 inline constexpr double kLeastGain = 0.05;

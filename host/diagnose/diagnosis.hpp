@@ -104,6 +104,7 @@ struct Diagnosis : PreparedSets {
   std::optional<EffortError> effort;
   double given_train = 0.0, given_validate = 0.0;    ///< combined errors of the given model
   double before_train = 0.0, before_validate = 0.0;  ///< combined errors of the refitted base
+  SetLevels base_level;                              ///< of the refitted base
   double after_train = 0.0, after_validate = 0.0;    ///< combined errors with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< regions of the error of the refitted base, all records
   ResidualTests residual;  ///< how the torque or force residual of `best` depends on each coordinate

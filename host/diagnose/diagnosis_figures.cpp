@@ -23,7 +23,8 @@ double period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis)
   const auto has_period = [](const sim::EffectEntry& entry) { return entry.has("period"); };
   if (std::ranges::none_of(model.effects, has_period))
     for (const JudgedCandidate& candidate : diagnosis.candidates)
-      if (has_period(candidate.model.effects.back())) return candidate.model.effects.back().at("period");
+      if (const sim::EffectEntry& main = *candidate.model.find(candidate.kinds.back()); has_period(main))
+        return main.at("period");
   return ripple_period(model);
 }
 

@@ -9,6 +9,7 @@
 #include "host/diagnose/diagnosis.hpp"
 #include "host/exit_codes.hpp"
 #include "host/search/candidate_starts.hpp"
+#include "host/search/further_waves.hpp"
 
 namespace host {
 
@@ -29,6 +30,7 @@ std::optional<EffectByMotion> fitted_on(PreparedSets sets, const sim::EffectInfo
   effort.balance = balance;
   std::vector<Candidate> found = search_kinds({&effect}, sets.base, {}, sets.training, sets.validation, {}, effort);
   if (found.empty()) return {};
+  add_further_waves(found.front(), sets);
   return EffectByMotion{std::move(sets), std::move(found.front())};
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/cancellation.hpp"
+#include "host/compare/chance.hpp"
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/effect_by_motion.hpp"

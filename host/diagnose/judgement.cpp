@@ -15,12 +15,6 @@ namespace host {
 
 namespace {
 
-/// Number of windows of a set in `span_s` of motion.
-std::size_t windows_in(double span_s, const RecordSet& set) {
-  return std::max<std::size_t>(1,
-                               static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
-}
-
 /// The candidates of all steps. Of several fits of the same effects, only the best is kept.
 std::vector<const Candidate*> all_of(const Findings& findings) {
   std::vector<const Candidate*> all;
@@ -97,6 +91,7 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   renew_floors(validation, best.model);
   diagnosis.before_train = before_train.combined;
   diagnosis.before_validate = before.combined;
+  diagnosis.base_level = levels_of(before_train, before, best);
   judge_candidates(diagnosis, all, best, before);
   diagnosis.given_train = error_over_own_floors(given, training).combined;
   diagnosis.given_validate = error_over_own_floors(given, validation).combined;

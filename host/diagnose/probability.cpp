@@ -77,8 +77,9 @@ void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   }
   const JudgedCandidate* best =
       &diagnosis.candidates[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
-  const double unexplained = 1.0 - explained_by(*best, diagnosis);
-  const double other = probability_of_other(unexplained, diagnosis, scale);
+  const double explained = std::min(explained_share(diagnosis.base_level.train, best->level.train),
+                                    explained_share(diagnosis.base_level.validate, best->level.validate));
+  const double other = probability_of_other(1.0 - explained, diagnosis, scale);
   double candidates = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     diagnosis.candidates[k].probability = (1.0 - nothing) * (1.0 - other) * (1.0 - best->luck) * weights[k] / sum;

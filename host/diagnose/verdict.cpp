@@ -115,8 +115,8 @@ std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind ki
 /// encoder each homing gives the travel a new zero and the ripple a new phase. Empty if there is no such ripple.
 std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::DriveKind kind) {
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
-    const sim::EffectEntry& last = candidate.model.effects.back();
-    if (last.kind != candidate.kinds.back() || !last.has("period")) continue;
+    const sim::EffectEntry* last = candidate.model.find(candidate.kinds.back());
+    if (last == nullptr || !last->has("period")) continue;
     double train = diagnosis.before_train, validate = diagnosis.before_validate;
     PrintedError printed = diagnosis.printed_base();
     if (candidate.kinds.size() == 2) {
@@ -128,12 +128,12 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
       printed = Diagnosis::printed(*first);
     }
     if (candidate.train_after > (1.0 - kLeastGain) * train || candidate.after < validate) continue;
-    const double period_mm = kind == sim::DriveKind::rotary ? last.at("period") : 1e3 * last.at("period");
+    const double period_mm = kind == sim::DriveKind::rotary ? last->at("period") : 1e3 * last->at("period");
     return fmt::format(
         " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
         "noise floor, but not on validation data: its phase differs between records, as after a new homing, so it is "
         "not claimed.",
-        period_mm, last.kind, printed.train, Diagnosis::printed(candidate).train);
+        period_mm, last->kind, printed.train, Diagnosis::printed(candidate).train);
   }
   return {};
 }
@@ -253,8 +253,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.explanation = fmt::format(
         "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of the "
         "explainable error. {}.",
-        fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
-        Diagnosis::printed(*chosen).validate, 100.0 * explained_by(*chosen, diagnosis), first.shows);
+        fmt::join(titles, " and "), parameters_in_words(*chosen->model.find(chosen->kinds.back()), given.data.kind),
+        before, Diagnosis::printed(*chosen).validate, 100.0 * explained_by(*chosen, diagnosis), first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)

@@ -71,17 +71,20 @@ std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescriptio
   return even;
 }
 
+/// The model with those effects as given that the given model has.
+sim::DriveDescription on_given_base(sim::DriveDescription model, const sim::DriveDescription& given) {
+  for (sim::EffectEntry& entry : model.effects)
+    if (const sim::EffectEntry* original = given.find(entry.kind)) entry = *original;
+  return model;
+}
+
 /// Refits the last effect from both sides of each of its parameters (unless they were scanned), because an effect at
 /// breakaway or impact has several local minima. Also starts from the given base, because the refit without the effect
 /// may have biased the base too far.
 sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
   const sim::DriveDescription& model = finalist.model;
   std::vector<sim::DriveDescription> starts{model};
-  if (nominal != nullptr) {
-    starts.push_back(model);
-    for (sim::EffectEntry& entry : starts.back().effects)
-      if (const sim::EffectEntry* original = nominal->find(entry.kind)) entry = *original;
-  }
+  if (nominal != nullptr) starts.push_back(on_given_base(model, *nominal));
   std::vector<std::string> ids;
   for (const auto& [id, value] : model.effects.back().parameters)
     if (!finalist.scanned && id != "period" && id != "cosine" && id != "sine") ids.push_back(id);
@@ -228,7 +231,12 @@ class KindSearch {
   std::vector<std::vector<Start>> starts_of(const std::vector<const sim::EffectInfo*>& infos) const {
     std::vector<std::vector<Start>> starts(infos.size());
     for_each_in_parallel(infos.size(), [&](std::size_t k) {
-      for (sim::DriveDescription& start : starting_models(*infos[k], model_, training_))
+      std::vector<sim::DriveDescription> models = starting_models(*infos[k], model_, training_);
+      // A wave of slow motion biases the base so far that it is not found beside it.
+      if (infos[k]->periodic && effort_.nominal != nullptr)
+        std::ranges::move(starting_models(*infos[k], on_given_base(model_, *effort_.nominal), training_),
+                          std::back_inserter(models));
+      for (sim::DriveDescription& start : models)
         if (training_.measure != Measure::effort || has_inverse(sim::Drive(start)))
           starts[k].push_back({infos[k], std::move(start)});
     });

@@ -11,6 +11,7 @@
 #include "host/compare/effort_residual.hpp"
 #include "host/evidence/coming_back.hpp"
 #include "host/evidence/period_search.hpp"
+#include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -234,14 +235,30 @@ void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription
   }
 }
 
+/// Shortest period that the smoothed motion shows at the usual speed, mm or m.
+double shortest_period(const RecordSet& set, double lead) {
+  constexpr double kSamplesAPeriod = 8.0;
+  double shortest = HUGE_VAL;
+  for (const ComparedRecord& compared : set.records) {
+    const SmoothedMotion& motion = compared.prepared.motion();
+    std::vector<double> speeds;
+    for (std::size_t k = 0; k < motion.w.size(); ++k)
+      if (!motion.standing[k]) speeds.push_back(std::abs(motion.w[k]));
+    if (!speeds.empty())
+      shortest = std::min(shortest, kSamplesAPeriod * median(std::move(speeds)) * lead * compared.prepared.period_s);
+  }
+  return std::isfinite(shortest) ? shortest : 0.0;
+}
+
 std::vector<sim::EffectEntry> periodic_entries(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                                const RecordSet& set, const RecordScales& scales) {
   const TravelSignal signal = signal_of(info, model, set);
   constexpr std::size_t kPeaks = 3;
   const bool slow = info.kind == "position_dependent_friction";
   // Fast effects repeat many times over the travel; friction along the travel has at most a few periods.
-  const double shortest =
-      slow ? scales.travel / 12.0 : std::max(40.0 * model.data.encoder_resolution, scales.travel / 2000.0);
+  const double shortest = slow ? scales.travel / 12.0
+                               : std::max({40.0 * model.data.encoder_resolution, scales.travel / 2000.0,
+                                           shortest_period(set, model.data.lead)});
   const double longest = slow ? 3.0 * scales.travel : scales.travel / 3.0;
   std::vector<PeriodPeak> peaks = find_periods(signal, shortest, longest, kPeaks);
   std::vector<sim::EffectEntry> entries;

@@ -12,6 +12,7 @@
 #include "host/parallel.hpp"
 #include "host/search/balance_odds.hpp"
 #include "host/search/explained_share.hpp"
+#include "host/search/further_waves.hpp"
 #include "host/search/physical_range.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/second_mass.hpp"
@@ -121,6 +122,12 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
   return found;
 }
 
+/// Appends all entries of a kind: a periodic effect may have several waves.
+void append_entries(const sim::DriveDescription& from, const std::string& kind, sim::DriveDescription& to) {
+  for (const sim::EffectEntry& entry : from.effects)
+    if (entry.kind == kind) to.effects.push_back(entry);
+}
+
 /// The candidate with one of its earlier effects replaced by an effect with which it is often confused, if that also
 /// helps alone. The last effect was searched only beside the earlier ones.
 std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vector<Candidate>& singles,
@@ -139,10 +146,10 @@ std::vector<Candidate> with_one_exchanged(const Candidate& whole, const std::vec
         continue;
       Exchange exchange{{other}, single.model, whole.model};
       std::erase_if(exchange.exchanged.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
-      exchange.exchanged.effects.push_back(*single.model.find(other));
+      append_entries(single.model, other, exchange.exchanged);
       for (const std::string& kept : whole.kinds) {
         if (kept == kind) continue;
-        exchange.alone.effects.push_back(*whole.model.find(kept));
+        append_entries(whole.model, kept, exchange.alone);
         exchange.kinds.push_back(kept);
       }
       exchanges.push_back(std::move(exchange));
@@ -285,7 +292,10 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     split_friction(candidates, sets);
     compare_with_springs(candidates, sets);
     if (!kinds.empty()) add_exchanged(candidates, found.singles, sets);
-    if (const auto best = std::ranges::find_if(candidates, physical); best != candidates.end()) finish_fit(*best, sets);
+    if (const auto best = std::ranges::find_if(candidates, physical); best != candidates.end()) {
+      add_further_waves(*best, sets);
+      finish_fit(*best, sets);
+    }
     std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
     return candidates;
   };

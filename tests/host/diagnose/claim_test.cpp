@@ -35,6 +35,7 @@ host::Diagnosis diagnosis(double before_train, double before_validate) {
   host::Diagnosis result;
   result.before_train = before_train;
   result.before_validate = before_validate;
+  result.base_level = {before_train, before_validate};
   return result;
 }
 

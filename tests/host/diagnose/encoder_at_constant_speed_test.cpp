@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -28,8 +29,13 @@ sim::DriveDescription carriage() {
   return drive;
 }
 
+struct Wave {
+  double amplitude_m, period_m;
+};
+
 /// The carriage moves at the speed for 5 V. The encoder adds its error, counts and a little noise.
-host::Record run(double from_m, double duration_s, bool with_tachometer, unsigned seed) {
+host::Record run(double from_m, double duration_s, bool with_tachometer, unsigned seed,
+                 const std::vector<Wave>& waves = {{kAmplitude_m, kPeriod_m}}) {
   std::mt19937 random(seed);
   std::normal_distribution<double> jitter(0.0, 1.0);
   host::Record record;
@@ -39,7 +45,8 @@ host::Record run(double from_m, double duration_s, bool with_tachometer, unsigne
   double x = from_m;
   for (double t_s = 0.0; t_s < duration_s; t_s += 0.01) {
     const double u_V = 5.0 + 0.02 * jitter(random), v_m_s = u_V / 5.0 * kSpeed_m_s;
-    const double reading = x + kAmplitude_m * std::sin(2.0 * std::numbers::pi * x / kPeriod_m) + 5e-8 * jitter(random);
+    double reading = x + 5e-8 * jitter(random);
+    for (const Wave& wave : waves) reading += wave.amplitude_m * std::sin(2.0 * std::numbers::pi * x / wave.period_m);
     record.t_s.push_back(t_s);
     record.u_V.push_back(u_V);
     record.x.push_back(1e-7 * std::round(reading / 1e-7));
@@ -76,6 +83,22 @@ TEST_F(EncoderAtConstantSpeed, IsNamedWhereATachometerGivesTheMotion) {
   ASSERT_NE(found, nullptr);
   EXPECT_NEAR(found->at("period"), kPeriod_m, 0.002 * kPeriod_m);
   EXPECT_NEAR(std::hypot(found->at("cosine"), found->at("sine")), kAmplitude_m, 0.1 * kAmplitude_m);
+}
+
+TEST_F(EncoderAtConstantSpeed, FurtherWavesOfItAreFound) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const std::vector<Wave> waves{{kAmplitude_m, kPeriod_m}, {1.6e-6, kPeriod_m / 2.0}, {1.2e-6, kPeriod_m / 3.0}};
+  const host::Diagnosis diagnosis = host::diagnose(
+      drive,
+      host::MeasurementGate(drive).admit({run(0.001, 20.0, true, 1, waves)}, {run(0.007, 15.0, true, 2, waves)}));
+  ASSERT_THAT(diagnosis.verdict.effects, testing::ElementsAre("encoder_cyclic_error"));
+  for (const Wave& wave : waves) {
+    const auto found = std::ranges::find_if(diagnosis.best.effects, [&](const sim::EffectEntry& entry) {
+      return entry.kind == "encoder_cyclic_error" && std::abs(entry.at("period") / wave.period_m - 1.0) < 0.01;
+    });
+    ASSERT_NE(found, diagnosis.best.effects.end()) << wave.period_m;
+    EXPECT_NEAR(std::hypot(found->at("cosine"), found->at("sine")), wave.amplitude_m, 0.05 * wave.amplitude_m);
+  }
 }
 
 TEST_F(EncoderAtConstantSpeed, AModelThatHasTheErrorNeedsNoTorqueForIt) {

@@ -20,6 +20,7 @@ host::JudgedCandidate candidate(const char* kind, double after, double luck) {
 host::Diagnosis diagnosis_of(std::vector<host::JudgedCandidate> candidates, double before = 20.0) {
   host::Diagnosis diagnosis;
   diagnosis.before_train = diagnosis.before_validate = before;
+  diagnosis.base_level = {before, before};
   diagnosis.candidates = std::move(candidates);
   host::assign_probabilities(diagnosis);
   return diagnosis;
