@@ -22,7 +22,7 @@ struct Verdict {
   std::string headline;                ///< one sentence
   std::vector<std::string> sentences;  ///< the reasons, and the next step
   std::string command;                 ///< the command for the next step; may be empty
-  std::vector<std::string> details;    ///< further sentences, which the workbench shows on demand
+  std::vector<std::string> details{};  ///< further sentences, which the workbench shows on demand
 };
 
 /// One trace over the time axis of its plot, with as many values as `TimePlot::t_s`. NaN makes a gap.
