@@ -14,10 +14,10 @@ namespace host {
 
 namespace {
 
-constexpr int kMostWaves = 12;  // limits the time
+constexpr int kMostRounds = 12;  // limits the time
 
 /// The model with the strongest waves of this effect in the residual, all at once: of several equal ones, each alone
-/// hardly lowers the error.
+/// hardly lowers the error. The given model if its residual has no further wave.
 sim::DriveDescription with_next_waves(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                       const RecordSet& training) {
   sim::DriveDescription further = model;
@@ -29,6 +29,7 @@ sim::DriveDescription with_next_waves(const sim::EffectInfo& info, const sim::Dr
   };
   for (sim::DriveDescription& start : starting_models(info, model, training))
     if (!is_known(start.effects.back())) further.effects.push_back(std::move(start.effects.back()));
+  if (further.effects.size() == model.effects.size()) return model;
   return fit_model(further, training, kSeriousFit).model;
 }
 
@@ -37,8 +38,9 @@ sim::DriveDescription with_next_waves(const sim::EffectInfo& info, const sim::Dr
 void add_further_waves(Candidate& candidate, const PreparedSets& sets) {
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   if (!info.periodic) return;
-  for (int wave = 0; wave < kMostWaves && candidate.validation.combined > kExplained; ++wave) {
+  for (int round = 0; round < kMostRounds && candidate.validation.combined > kExplained; ++round) {
     const sim::DriveDescription model = with_next_waves(info, candidate.model, sets.training);
+    if (model.effects.size() == candidate.model.effects.size()) return;
     Candidate further = judged(candidate.kinds, model, sets.training, sets.validation);
     const double luck = probability_of_luck(candidate.validation.window_log_loss, further.validation.window_log_loss, 1,
                                             windows_in(kLuckBlock_s, sets.validation));

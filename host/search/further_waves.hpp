@@ -6,9 +6,9 @@
 
 namespace host {
 
-/// Adds waves of the candidate's last effect, one at a time, while they leave something to explain and each predicts
-/// the held-back windows better than chance (kMostLuck). Each is the strongest one in the residual of the training
-/// records, as a further entry. Leaves a candidate whose last effect has no period as it is.
+/// Adds waves of the candidate's last effect while something is left to explain and they predict the held-back windows
+/// better than chance (kMostLuck). Each round adds the strongest waves in the residual of the training records at once,
+/// each with a period of its own. Leaves a candidate whose last effect has no period as it is.
 void add_further_waves(Candidate& candidate, const PreparedSets& sets);
 
 }  // namespace host
