@@ -41,6 +41,7 @@ NOT_RUN = [
     (r"axistool circle\b", "needs records of circles; host/axes's tests run it"),
     (r"--response", "needs what bode writes; host/response's tests run it"),
     (r"--gain (current|inertia)", "records with a current, or with an added mass; host/identify's tests run it"),
+    (r"backlash\+cogging", "a machine with both effects; host/diagnose's tests run it"),
     (r"\bimprove\b", "a minute; host/python's and host/diagnose's tests run it"),
     (r"--method paper", "longer jogs than those that are shipped; host/identify's tests run it"),
     (r"jittered|scope|angle", "a log of another program; host/record's tests run it"),

@@ -242,8 +242,8 @@ class Workbench(ServedPage, unittest.TestCase):
         browser = self.browser
         self.until("#content .blocks canvas")
         figure = "return [...document.querySelectorAll('#content figure')].find((one) => one.querySelector('strong')?.textContent === arguments[0])"
-        spectrum = browser.execute_script(figure, "Spectrum")
-        self.assertIn("Nm/√Hz", spectrum.text)
+        spectrum = WebDriverWait(browser, PATIENCE_S).until(lambda _: browser.execute_script(figure, "Spectrum"))
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "Nm/√Hz" in spectrum.text)  # drawn after the first picture
         speed = browser.execute_script(figure, "Against speed")
         browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", speed)
         next(button for button in speed.find_elements(By.CSS_SELECTOR, ".tools button") if button.text == "log y").click()
