@@ -6,6 +6,7 @@
   const GAP = 0xffffff;
   // Most intervals drawn in the visible range. All samples are kept, so zooming in shows every one of them.
   const VISIBLE_STRETCHES = 1500;
+  const VISIBLE_ROWS = 3 * VISIBLE_STRETCHES; // up to these, every sample is drawn
   const PIXELS_OF_A_STRETCH = 2; // its lowest and highest value have two places
   const HIDDEN_STRETCHES = 200;
   const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
@@ -76,8 +77,9 @@
     const to = window ? Math.min(x.length, firstRowFrom(x, window[1]) + 1) : x.length;
     const rows = [];
     pushExtremes(columns, 0, from, HIDDEN_STRETCHES, rows);
-    const stretches = Math.ceil((width * devicePixelRatio) / PIXELS_OF_A_STRETCH);
-    pushExtremes(columns, from, to, Math.min(VISIBLE_STRETCHES, Math.max(HIDDEN_STRETCHES, stretches)), rows);
+    const seen = Math.max(HIDDEN_STRETCHES, Math.ceil((width * devicePixelRatio) / PIXELS_OF_A_STRETCH));
+    const isWhole = to - from <= VISIBLE_ROWS;
+    pushExtremes(columns, from, to, isWhole ? VISIBLE_ROWS : Math.min(VISIBLE_STRETCHES, seen), rows);
     pushExtremes(columns, to, x.length, HIDDEN_STRETCHES, rows);
     return rows.map((row) => [x[row], ...columns.map((column) => column[row])]);
   }
