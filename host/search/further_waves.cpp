@@ -49,4 +49,18 @@ void add_further_waves(Candidate& candidate, const PreparedSets& sets) {
   }
 }
 
+void hold_further_waves(sim::DriveDescription& model, const sim::DriveDescription& base,
+                        const std::vector<std::string>& kinds, bool held) {
+  for (const std::string& kind : kinds) {
+    // Those of the base, and the first one added to it, come first.
+    auto ahead = std::ranges::count(base.effects, kind, &sim::EffectEntry::kind) + 1;
+    for (sim::EffectEntry& entry : model.effects) {
+      if (entry.kind != kind || ahead-- > 0) continue;
+      entry.held.clear();
+      if (!held) continue;
+      for (const auto& [id, value] : entry.parameters) entry.held.insert(id);
+    }
+  }
+}
+
 }  // namespace host

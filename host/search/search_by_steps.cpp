@@ -287,15 +287,19 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto physical = [&sets](const Candidate& candidate) { return is_physical(candidate, sets); };
   const auto search = [&](const sim::DriveDescription& model, const std::vector<std::string>& kinds, double from,
                           double to) {
+    sim::DriveDescription before = model;
+    hold_further_waves(before, sets.base, kinds, true);
     std::vector<Candidate> candidates =
-        search_candidates(model, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
+        search_candidates(before, kinds, sets.training, sets.validation, part_of(progress, from, to), effort);
     split_friction(candidates, sets);
     compare_with_springs(candidates, sets);
     if (!kinds.empty()) add_exchanged(candidates, found.singles, sets);
     if (const auto best = std::ranges::find_if(candidates, physical); best != candidates.end()) {
       add_further_waves(*best, sets);
+      hold_further_waves(best->model, sets.base, best->kinds, false);
       finish_fit(*best, sets);
     }
+    for (Candidate& candidate : candidates) hold_further_waves(candidate.model, sets.base, candidate.kinds, false);
     std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
     return candidates;
   };
