@@ -99,15 +99,27 @@ export function titleOf(job) {
   return (kVerbs[job.request.do] || job.request.do) + kind + ": " + (job.request.model || job.request.models.join(", "));
 }
 
-/** A progress bar for each running job. */
-export function progressBars() {
-  return jobs.filter(isOpen).reverse().map((job) => {
-    const known = job.state === "running" && job.share > 0;
-    return el("div", { className: "progress", id: "progress-" + job.id },
-      el("span", {}, titleOf(job) + (job.state === "queued" ? " (waits)" : known ? " · " + percent(job.share) : "") + (job.message ? " · " + job.message : "")),
-      el("progress", known ? { max: 1, value: job.share, "aria-label": titleOf(job) } : { "aria-label": titleOf(job) }),
-      el("button", { type: "button", onclick: () => cancel(job) }, "Cancel"));
-  });
+/** @param {any} job */
+function progressBar(job) {
+  return el("div", { className: "progress", id: "progress-" + job.id }, el("span"), el("progress", { max: 1, "aria-label": titleOf(job) }),
+    el("button", { type: "button", onclick: () => cancel(job) }, "Cancel"));
+}
+
+/** A progress bar for each running job. Bars stay the same elements: a button that is replaced while it is pressed is
+ * never clicked.
+ * @param {Element} place
+ */
+export function showProgress(place) {
+  const running = jobs.filter(isOpen).reverse();
+  for (const bar of [...place.children]) if (!running.some((job) => bar.id === "progress-" + job.id)) bar.remove();
+  for (const job of running) {
+    let bar = place.querySelector("#progress-" + job.id);
+    if (!bar) place.append((bar = progressBar(job)));
+    const known = job.state === "running" && job.share > 0, share = bar.querySelector("progress");
+    bar.querySelector("span").textContent = titleOf(job) + (job.state === "queued" ? " (waits)" : known ? " · " + percent(job.share) : "") + (job.message ? " · " + job.message : "");
+    if (known) share.value = job.share;
+    else share.removeAttribute("value");
+  }
 }
 
 /** @param {Element} place */

@@ -10,7 +10,7 @@ import { leaveLoop, showLoop } from "./loop.js";
 import { leaveLive, liveKey, showLive } from "./live.js";
 import { showOpening } from "./opening.js";
 import { showRecord } from "./record.js";
-import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
+import { jobs, lookAtJobs, onJobs, showJobs, showProgress } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
 import { continueTheOne, stopsPlace, watchStops } from "./stops.js";
 
@@ -60,15 +60,21 @@ function pressed(event) {
   else if (isShown("live")) liveKey(event.key);
 }
 
+/** What the list of jobs shows. */
+const statesOfJobs = () => JSON.stringify(jobs.map((job) => [job.id, job.state, job.message]));
+let shownStates = "";
+
 async function start() {
   if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
   document.getElementById("view").replaceChildren(stopsPlace, progress, content);
   acceptDrops();
   onChoice(() => !["jobs", "open", "live", "record"].some(isShown) && show());
   onJobs(async (ended) => {
-    progress.replaceChildren(...progressBars());
+    showProgress(progress);
+    const isNew = statesOfJobs() !== shownStates;
+    shownStates = statesOfJobs();
     const isDrawn = await follow(ended);
-    if (isShown("jobs") || (ended.length && !isDrawn && isShown("effects"))) show();
+    if ((isNew && isShown("jobs")) || (ended.length && !isDrawn && isShown("effects"))) show();
     if (ended.length) await loadFolder();
   });
   window.addEventListener("hashchange", goTo);
