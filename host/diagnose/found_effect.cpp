@@ -57,7 +57,7 @@ double carried_share(const ResidualEffort& samples, const Values& trace, const R
 /// The period over which a ripple is drawn: its own, but that of its strongest order if this is so fine that the whole
 /// period would have too few bins for each ripple. 0 if there is none.
 double drawn_period(const sim::EffectEntry& entry) {
-  constexpr double kFinestOrder = 8.0;
+  constexpr double kFinestOrder = 4.0;  // some 48 bins are a dozen for each ripple
   if (!entry.has("period")) return 0.0;
   const std::vector<sim::HarmonicTerm> terms =
       entry.has_any("cosine") ? sim::harmonics_of(entry) : std::vector<sim::HarmonicTerm>{};
