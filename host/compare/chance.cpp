@@ -66,4 +66,8 @@ double probability_of_luck(const std::vector<double>& before, const std::vector<
   return std::min(1.0, static_cast<double>(tried) * as_good / (kSigns + 1));
 }
 
+double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, const RecordSet& set) {
+  return probability_of_luck(before.window_log_loss, after.window_log_loss, tried, windows_in(kLuckBlock_s, set));
+}
+
 }  // namespace host

@@ -28,5 +28,7 @@ std::size_t windows_in(double span_s, const RecordSet& set);
 /// 1.
 double probability_of_luck(const std::vector<double>& before, const std::vector<double>& after, std::size_t tried,
                            std::size_t block);
+/// The same from the errors of two models on `set`, in blocks of kLuckBlock_s.
+double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, const RecordSet& set);
 
 }  // namespace host

@@ -74,15 +74,16 @@ std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, cons
   std::vector<std::string_view> names(info.along.begin(), info.along.end());
   if (info.curve) names.push_back(entry.over);
   std::vector<ResidualCoordinate> all;
+  const double period = drawn_period(entry);
   for (std::string_view name : names) {
     if (name == "friction_along_position") name = "position";
     if (name == "friction_over_time") name = "time";
     if (name == "frequency") continue;  // no coordinate of a sample
-    ResidualCoordinate over = coordinate_of(name, kind, drawn_period(entry));
+    ResidualCoordinate over = coordinate_of(name, kind, period);
     if ((samples.*over.along).size() != samples.w.size()) continue;
     if (over.period > 0.0) {
       const auto [low, high] = std::ranges::minmax_element(samples.x);
-      over.folded = *high - *low > 2.0 * drawn_period(entry);
+      over.folded = *high - *low > 2.0 * period;
       if (over.folded) over.axis.quantity = fmt::format("position within {:.4g} mm", over.period);
     }
     all.push_back(std::move(over));

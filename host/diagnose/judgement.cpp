@@ -52,10 +52,8 @@ void judge_candidates(Diagnosis& diagnosis, const std::vector<const Candidate*>&
     JudgedCandidate& judged = diagnosis.candidates[k];
     for (std::size_t other = 0; other < all.size(); ++other)
       if (all[other]->kinds.size() <= judged.kinds.size() + 1 && is_better(diagnosis.candidates[other], judged, kTie))
-        judged.suffices =
-            std::min(judged.suffices,
-                     probability_of_luck(all[k]->validation.window_log_loss, all[other]->validation.window_log_loss,
-                                         all.size(), windows_in(kLuckBlock_s, diagnosis.validation)));
+        judged.suffices = std::min(judged.suffices, probability_of_luck(all[k]->validation, all[other]->validation,
+                                                                        all.size(), diagnosis.validation));
   });
   std::ranges::stable_sort(diagnosis.candidates, {},
                            [](const JudgedCandidate& judged) { return Diagnosis::printed(judged).validate; });
@@ -73,7 +71,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.train_after = candidate.training.combined;
   const std::vector<double>&without = before.window_log_loss, &with = candidate.validation.window_log_loss;
   judged.confidence = confidence_of_improvement(without, with, windows_in(kBlock_s, validation));
-  judged.luck = probability_of_luck(without, with, tried, windows_in(kLuckBlock_s, validation));
+  judged.luck = probability_of_luck(before, candidate.validation, tried, validation);
   judged.model = candidate.model;
   judged.on_bound = unphysical_parameters(candidate.model, candidate.kinds, training);
   return judged;

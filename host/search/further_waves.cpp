@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "host/compare/chance.hpp"
@@ -17,9 +18,9 @@ namespace {
 constexpr int kMostRounds = 12;  // limits the time
 
 /// The model with the strongest waves of this effect in the residual, all at once: of several equal ones, each alone
-/// hardly lowers the error. The given model if its residual has no further wave.
-sim::DriveDescription with_next_waves(const sim::EffectInfo& info, const sim::DriveDescription& model,
-                                      const RecordSet& training) {
+/// hardly lowers the error. Empty if the residual has no further wave.
+std::optional<sim::DriveDescription> with_next_waves(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                                     const RecordSet& training) {
   sim::DriveDescription further = model;
   const double travel = scales_of(training).travel;
   const auto is_known = [&](const sim::EffectEntry& wave) {
@@ -29,7 +30,7 @@ sim::DriveDescription with_next_waves(const sim::EffectInfo& info, const sim::Dr
   };
   for (sim::DriveDescription& start : starting_models(info, model, training))
     if (!is_known(start.effects.back())) further.effects.push_back(std::move(start.effects.back()));
-  if (further.effects.size() == model.effects.size()) return model;
+  if (further.effects.size() == model.effects.size()) return {};
   return fit_model(further, training, kSeriousFit).model;
 }
 
@@ -39,12 +40,11 @@ void add_further_waves(Candidate& candidate, const PreparedSets& sets) {
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   if (!info.periodic) return;
   for (int round = 0; round < kMostRounds && candidate.validation.combined > kExplained; ++round) {
-    const sim::DriveDescription model = with_next_waves(info, candidate.model, sets.training);
-    if (model.effects.size() == candidate.model.effects.size()) return;
-    Candidate further = judged(candidate.kinds, model, sets.training, sets.validation);
-    const double luck = probability_of_luck(candidate.validation.window_log_loss, further.validation.window_log_loss, 1,
-                                            windows_in(kLuckBlock_s, sets.validation));
-    if (luck > kMostLuck || further.training.log_loss > candidate.training.log_loss) return;
+    const std::optional<sim::DriveDescription> model = with_next_waves(info, candidate.model, sets.training);
+    if (!model) return;
+    Candidate further = judged(candidate.kinds, *model, sets.training, sets.validation);
+    const double p_value = probability_of_luck(candidate.validation, further.validation, 1, sets.validation);
+    if (p_value > kMostLuck || further.training.log_loss > candidate.training.log_loss) return;
     candidate = std::move(further);
   }
 }

@@ -294,12 +294,10 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     split_friction(candidates, sets);
     compare_with_springs(candidates, sets);
     if (!kinds.empty()) add_exchanged(candidates, found.singles, sets);
-    if (const auto best = std::ranges::find_if(candidates, physical); best != candidates.end()) {
-      add_further_waves(*best, sets);
-      hold_further_waves(best->model, sets.base, best->kinds, false);
-      finish_fit(*best, sets);
-    }
+    const auto best = std::ranges::find_if(candidates, physical);
+    if (best != candidates.end()) add_further_waves(*best, sets);
     for (Candidate& candidate : candidates) hold_further_waves(candidate.model, sets.base, candidate.kinds, false);
+    if (best != candidates.end()) finish_fit(*best, sets);
     std::ranges::stable_sort(candidates, {}, &Candidate::log_loss);
     return candidates;
   };
