@@ -6,7 +6,7 @@ JOBS    ?= $(shell nproc)
 NEED     = @cmake/packages/install.sh
 SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
 
-# Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which
+# Configures the build tree $1 with the options $2. A new tree for programs compiles many sources together, which
 # is faster. UNITY=OFF compiles each separately, for work on single files. Without UNITY an existing tree keeps its
 # setting.
 configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages \

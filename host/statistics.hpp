@@ -23,6 +23,13 @@ inline double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Whether all finite values are the same.
+inline bool is_constant(const std::vector<double>& values) {
+  const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
+  return first == values.end() ||
+         std::ranges::all_of(values, [&](double value) { return !std::isfinite(value) || value == *first; });
+}
+
 /// Quantile: the value that the fraction `part` (0 to 1) of the values does not exceed. Needs at least one value.
 inline double quantile(std::vector<double> values, double part) {
   const auto rank = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));

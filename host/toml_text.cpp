@@ -76,4 +76,10 @@ std::string toml_string(std::string_view text) {
   return out + '"';
 }
 
+std::string toml_number(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
 }  // namespace host

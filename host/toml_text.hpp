@@ -16,4 +16,7 @@ toml::table parse_toml(std::string_view text, std::string_view name);
 /// Any text as a basic TOML string, with the required escapes.
 std::string toml_string(std::string_view text);
 
+/// The shortest text that gives the same number when it is read, and that is a float in TOML.
+std::string toml_number(double value);
+
 }  // namespace host

@@ -34,6 +34,9 @@ struct DataSheet {
   double load_encoder_offset_per_K = 0.0;     ///< drift of its zero as the machine warms, mm or m per kelvin
   std::optional<double> tach_noise_variance;  ///< (rad/s)^2 or (m/s)^2; empty: the drive has no tachometer
 
+  /// Travel of a turn of the motor, mm; 0 for a linear drive.
+  double turn() const { return kind == DriveKind::rotary ? 2.0 * std::numbers::pi * lead : 0.0; }
+
   bool has_load_encoder() const { return load_encoder_resolution > 0.0; }
   /// Error of the scale's reading, mm or m, at this many kelvin above the temperature at which its zero was taken.
   double load_encoder_error(double travel, double warmer_K = 0.0) const {

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""local_names.py ROOT: names in anonymous namespaces differ within a folder, so that its sources compile together
-(cmake/modules/AxisUnity.cmake). Reads what clang-format has laid out: declarations of a namespace start their lines."""
+"""local_names.py ROOT: names in anonymous namespaces differ within host, within sim, and within a folder of tests, so
+that their sources compile together (cmake/modules/AxisUnity.cmake). Reads what clang-format has laid out: declarations
+of a namespace start their lines."""
 
 import re
 import sys
@@ -10,7 +11,7 @@ from pathlib import Path
 DECLARATIONS = [
     r"(?:struct|class|enum(?: class)?) (?:\[\[\w+\]\] )?(\w+)",
     r"(?:constexpr|const|inline|static)[\w:<>,*& ]*? (\w+)(?:\[\w*\])? ?[={]",
-    r"[\w:<>,*&][\w:<>,*& ]*[ *&](\w+)\((.*)",
+    r"[\w:<>,*&][\w:<>,*& ]*[ *&](\w+)\(([^)]*)",
 ]
 NO_NAME = {"if", "for", "while", "switch", "return", "operator", "TEST", "TEST_F"}
 
@@ -49,14 +50,14 @@ def main(root: Path) -> int:
     for top in ("host", "sim", "tests"):
         for source in sorted((root / top).rglob("*_test.cpp" if top == "tests" else "*.cpp")):
             if "examples" not in source.parts and not is_apart(source, root):
-                folders[source.parent].append(source)
+                folders[source.parent if top == "tests" else root / top].append(source)
     for sources in folders.values():
         where: dict[tuple[str, ...], Path] = {}
         for source in sources:
             for name in sorted(local_names(source.read_text(encoding="utf-8"))):
                 if name in where:
                     bad += 1
-                    print(f"{source.relative_to(root)}: {name[0]} is in {where[name].name} too; rename one", file=sys.stderr)
+                    print(f"{source.relative_to(root)}: {name[0]} is in {where[name].relative_to(root)} too; rename one", file=sys.stderr)
                 where.setdefault(name, source)
     return 1 if bad else 0
 

@@ -1,55 +1,55 @@
-# Sources of one folder are compiled together: most of the compile time goes to headers (Eigen, fmt, JSON, CLI11) and
-# their templates, which are then compiled once per folder. Names in anonymous namespaces must therefore differ within a
-# folder (cmake/checks/local_names.py). `make` and `make test` build a new tree in this way; UNITY=OFF compiles each
-# source separately, for work on a few of them. `make lint` also checks each separately, which shows that it includes
-# what it uses.
-option(AXIS_UNITY "Compile the sources of a folder together" OFF)
+# Sources of a library or program are compiled together: most of the compile time goes to headers (Eigen, fmt, JSON, CLI11)
+# and their templates, which are then compiled once for many sources. Names in anonymous namespaces must therefore differ
+# within a top folder (cmake/checks/local_names.py). `make` and `make test` build a new tree in this way; UNITY=OFF
+# compiles each source separately, for work on a few of them or with less than 2 GB of memory for each processor.
+# `make lint` also checks each separately, which shows that it includes what it uses.
+option(AXIS_UNITY "Compile many sources together" OFF)
 
-# axis_unity(OUT SOURCE...): sets OUT to the files to compile: the sources themselves, or files that include at most
-# AXIS_UNITY_SOURCES of a folder. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION, stays by
-# itself. AXIS_HOT_FOLDERS and separate sources, which compute, get -O2. All others get -O1, which takes two thirds of
-# the compile time.
-set(AXIS_UNITY_SOURCES 30)
+# axis_unity(NAME OUT SOURCE...): sets OUT to the files to compile for the target NAME: the sources themselves, or files
+# that include at most AXIS_UNITY_SOURCES. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION,
+# stays by itself. Separate sources and AXIS_HOT_FOLDERS, which compute, get -O2. All others get -O1, which takes two
+# thirds of the compile time.
+set(AXIS_UNITY_SOURCES 60)
 set(AXIS_HOT_FOLDERS sim effects compare fit search diagnose effort infer scale simulated_board)
-function(axis_unity OUT)
+function(axis_unity NAME OUT)
   if(NOT AXIS_UNITY)
     set(${OUT} ${ARGN} PARENT_SCOPE)
     return()
   endif()
-  set(FOLDERS)
   set(COMPILED)
+  set(O1_INCLUDES)
+  set(O2_INCLUDES)
   foreach(SOURCE IN LISTS ARGN)
     get_source_file_property(DEFINITIONS "${SOURCE}" COMPILE_DEFINITIONS)
     get_source_file_property(SKIPPED "${SOURCE}" SKIP_UNITY_BUILD_INCLUSION)
+    cmake_path(GET SOURCE PARENT_PATH FOLDER)
+    cmake_path(GET FOLDER FILENAME FOLDER)
     if(DEFINITIONS OR SKIPPED)
       list(APPEND COMPILED "${SOURCE}")
       if(CMAKE_BUILD_TYPE STREQUAL "Release")
         set_property(SOURCE "${SOURCE}" APPEND PROPERTY COMPILE_OPTIONS -O2)
       endif()
+    elseif(FOLDER IN_LIST AXIS_HOT_FOLDERS)
+      list(APPEND O2_INCLUDES "#include \"${SOURCE}\"")
     else()
-      cmake_path(GET SOURCE PARENT_PATH FOLDER)
-      cmake_path(GET FOLDER FILENAME FOLDER)
-      list(APPEND FOLDERS ${FOLDER})
-      list(APPEND SOURCES_${FOLDER} "#include \"${SOURCE}\"")
+      list(APPEND O1_INCLUDES "#include \"${SOURCE}\"")
     endif()
   endforeach()
-  list(REMOVE_DUPLICATES FOLDERS)
-  foreach(FOLDER IN LISTS FOLDERS)
-    list(LENGTH SOURCES_${FOLDER} COUNT)
+  foreach(LEVEL O2 O1)
+    list(LENGTH ${LEVEL}_INCLUDES COUNT)
+    if(COUNT EQUAL 0)
+      continue()
+    endif()
     math(EXPR GROUPS "(${COUNT} + ${AXIS_UNITY_SOURCES} - 1) / ${AXIS_UNITY_SOURCES}")
     math(EXPR SIZE "(${COUNT} + ${GROUPS} - 1) / ${GROUPS}")
     foreach(GROUP RANGE 1 ${GROUPS})
       math(EXPR FIRST "(${GROUP} - 1) * ${SIZE}")
-      list(SUBLIST SOURCES_${FOLDER} ${FIRST} ${SIZE} INCLUDES)
+      list(SUBLIST ${LEVEL}_INCLUDES ${FIRST} ${SIZE} INCLUDES)
       list(JOIN INCLUDES "\n" INCLUDES)
-      set(TOGETHER "${CMAKE_CURRENT_BINARY_DIR}/together/${FOLDER}_${GROUP}.cpp")
+      set(TOGETHER "${CMAKE_CURRENT_BINARY_DIR}/together/${NAME}_${LEVEL}_${GROUP}.cpp")
       file(CONFIGURE OUTPUT "${TOGETHER}" CONTENT "${INCLUDES}\n" @ONLY)
       if(CMAKE_BUILD_TYPE STREQUAL "Release")
-        set(LEVEL -O1)
-        if(FOLDER IN_LIST AXIS_HOT_FOLDERS)
-          set(LEVEL -O2)
-        endif()
-        set_source_files_properties("${TOGETHER}" PROPERTIES COMPILE_OPTIONS ${LEVEL})
+        set_source_files_properties("${TOGETHER}" PROPERTIES COMPILE_OPTIONS -${LEVEL})
       endif()
       list(APPEND COMPILED "${TOGETHER}")
     endforeach()

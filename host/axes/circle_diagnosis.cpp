@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+using std::numbers::pi;
 constexpr int kHats = 8;  ///< hat functions of the memory over the angle
 constexpr double kUsualMemory_um = 5.0;
 constexpr double kPlace_um = 1000.0;  ///< prior standard deviation of centre and radius
@@ -54,7 +54,7 @@ Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
       if (block.is_outer != is_outer) continue;
       const double factor = block.weight * (turns_over ? rows.passes()[block.pass].direction() : 1.0);
       for (Index row = block.first; row < block.end; ++row) {
-        double at = rows.angle_rad()(row) / kTwoPi * kHats;
+        double at = rows.angle_rad()(row) / (2.0 * pi) * kHats;
         at -= kHats * std::floor(at / kHats);
         const auto left = static_cast<Index>(at) % kHats;
         const double part = at - std::floor(at);

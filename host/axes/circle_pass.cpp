@@ -163,15 +163,15 @@ std::vector<double> unwrapped_angle(const Circle& circle, const std::vector<doub
   return angle;
 }
 
-struct Stretch {
+struct SteadyStretch {
   std::size_t first, end;
 };
 
 /// Ranges in which the point moves on the circle at a steady speed, long enough.
-std::vector<Stretch> steady_stretches(const PlaneRecord& plane, const Circle& circle,
-                                      const std::vector<double>& angle) {
+std::vector<SteadyStretch> steady_stretches(const PlaneRecord& plane, const Circle& circle,
+                                            const std::vector<double>& angle) {
   const auto half = static_cast<std::size_t>(std::max(2.0, 0.5 * kSpeedWindow_s / plane.period_s));
-  std::vector<Stretch> found;
+  std::vector<SteadyStretch> found;
   if (angle.size() < 4 * half) return found;
   const auto speed = [&](std::size_t k) {
     return (angle[k + half] - angle[k - half]) / (2.0 * static_cast<double>(half) * plane.period_s);
@@ -200,7 +200,7 @@ std::vector<Stretch> steady_stretches(const PlaneRecord& plane, const Circle& ci
   return found;
 }
 
-double smallest_step(const std::vector<double>& values) {
+double smallest_count(const std::vector<double>& values) {
   double least = HUGE_VAL;
   for (std::size_t k = 1; k < values.size(); ++k)
     if (const double step = std::abs(values[k] - values[k - 1]); step > 1e-9) least = std::min(least, step);
@@ -208,7 +208,7 @@ double smallest_step(const std::vector<double>& values) {
 }
 
 CirclePass pass_of(const PlaneRecord& plane, const Circle& circle, const std::vector<double>& angle,
-                   const Stretch& stretch) {
+                   const SteadyStretch& stretch) {
   CirclePass pass;
   const double turned = angle[stretch.end - 1] - angle[stretch.first];
   const double duration_s = static_cast<double>(stretch.end - 1 - stretch.first) * plane.period_s;
@@ -218,7 +218,7 @@ CirclePass pass_of(const PlaneRecord& plane, const Circle& circle, const std::ve
   pass.feed_mm_s = std::abs(turned) / duration_s * circle.radius;
   pass.period_s = plane.period_s;
   pass.has_reference = !plane.x_ref.empty() && !plane.y_ref.empty();
-  pass.count_um = 1e3 * std::max(smallest_step(plane.x), smallest_step(plane.y));
+  pass.count_um = 1e3 * std::max(smallest_count(plane.x), smallest_count(plane.y));
   pass.outer = !plane.ballbar.empty()                   ? OuterSensor::ballbar
                : !plane.x2.empty() && !plane.y2.empty() ? OuterSensor::scales
                                                         : OuterSensor::none;
@@ -252,7 +252,7 @@ std::vector<CirclePass> circle_passes(const std::vector<Record>& records) {
     const Circle circle = find_circle(x, y);
     if (!(circle.radius > 0.0) || !std::isfinite(circle.radius)) continue;
     const std::vector<double> angle = unwrapped_angle(circle, x, y);
-    for (const Stretch& stretch : steady_stretches(plane, circle, angle))
+    for (const SteadyStretch& stretch : steady_stretches(plane, circle, angle))
       passes.push_back(pass_of(plane, circle, angle, stretch));
   }
   if (passes.empty())

@@ -1,8 +1,6 @@
 // Homing: effects that depend on position can be compensated only on a homed axis.
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "firmware/app/parameters/axis_values.hpp"
 #include "host/commission/steps.hpp"
 #include "host/device/motion.hpp"
@@ -31,7 +29,7 @@ std::vector<CompensationParameter> CommissionSession::homing_parameters() const 
   if (!options_.homing) return {};
   const sim::DataSheet& sheet = options_.sheet.data;
   const double speed = kSpeedOfBox * options_.box.speed, way = kSearchOfBox * options_.box.travel;
-  const double turn = sheet.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * sheet.lead : way;
+  const double turn = sheet.kind == sim::DriveKind::rotary ? sheet.turn() : way;
   return {{"homing.mode", static_cast<double>(options_.homing->mode)},
           {"homing.velocity", options_.homing->is_backward ? -speed : speed},
           {"homing.creep_velocity", speed / 10.0},

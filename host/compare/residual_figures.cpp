@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "host/compare/effort_residual.hpp"
@@ -152,7 +151,7 @@ double ripple_period(const sim::DriveDescription& model) {
   for (const sim::EffectEntry& entry : model.effects)
     if (entry.has("period")) longest = std::max(longest, entry.at("period"));
   if (longest > 0.0) return longest;
-  return model.data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * model.data.lead : 0.0;
+  return model.data.turn();
 }
 
 std::vector<ScatterSeries> direction_curves(const ResidualEffort& samples, const Values& values,

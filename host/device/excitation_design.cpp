@@ -32,7 +32,7 @@ namespace {
 using firmware::ExcitationInput;
 using firmware::ExcitationKind;
 
-constexpr double kTurns = 4294967296.0;  // 2^32
+constexpr double kWholeTurn = 4294967296.0;  // 2^32
 
 class Designer {
  public:
@@ -196,7 +196,7 @@ class Designer {
     return value;
   }
   std::uint32_t turns_a_sample(double frequency_Hz) const {
-    return static_cast<std::uint32_t>(std::llround(frequency_Hz / scale_.rate_Hz * kTurns));
+    return static_cast<std::uint32_t>(std::llround(frequency_Hz / scale_.rate_Hz * kWholeTurn));
   }
 
   void put_ride() {
@@ -255,7 +255,7 @@ class Designer {
     if (lines.empty()) refuse("no odd line lies between from and to: a longer period has more of them");
     std::mt19937 random(seed_);
     std::vector<double> phase(lines.size());
-    for (double& p : phase) p = static_cast<double>(random()) / kTurns;
+    for (double& p : phase) p = static_cast<double>(random()) / kWholeTurn;
     double peak = 0.0;
     for (std::uint32_t k = 0; k < period; ++k) {
       double sum = 0.0;
@@ -268,8 +268,8 @@ class Designer {
     const bool is_reference = chosen_input() == ExcitationInput::reference;
     for (std::size_t i = 0; i < lines.size(); ++i)
       made_.entries.push_back({static_cast<float>(is_reference ? counts(each) : codes(each)),
-                               static_cast<std::uint32_t>(std::llround(kTurns * lines[i] / period)),
-                               static_cast<std::uint32_t>(phase[i] * kTurns)});
+                               static_cast<std::uint32_t>(std::llround(kWholeTurn * lines[i] / period)),
+                               static_cast<std::uint32_t>(phase[i] * kWholeTurn)});
     made_.request.count = static_cast<std::uint8_t>(lines.size());
     made_.request.period = period;
     made_.request.fade_samples = period;

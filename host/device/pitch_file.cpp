@@ -19,7 +19,7 @@ constexpr double kUnitsPerCount = 65536.0;
 constexpr TableLayout kCommas{.separator = ','};
 constexpr std::string_view kColumns = "x_mm, and forward_um with backward_um, or error_um";
 
-struct Field {
+struct PitchColumn {
   std::string_view name;  ///< without the unit
   double mm = 0.0;        ///< size of the column's unit, mm
 };
@@ -74,7 +74,8 @@ class PitchFile {
   }
 
   std::optional<std::size_t> place_of(std::string_view what) const {
-    const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Field& f) { return f.name == what; });
+    const auto found =
+        std::find_if(columns_.begin(), columns_.end(), [&](const PitchColumn& f) { return f.name == what; });
     return found == columns_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns_.begin()));
   }
 
@@ -119,7 +120,7 @@ class PitchFile {
   double count_mm_;
   std::size_t number_ = 0;
   std::vector<std::string_view> fields_;
-  std::vector<Field> columns_;
+  std::vector<PitchColumn> columns_;
   PitchPoints points_;
 };
 

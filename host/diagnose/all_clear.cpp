@@ -80,7 +80,7 @@ bool is_taken_up(const std::string& kind, const sim::DriveDescription& base) {
   return among(kConstants) || (base.find("stribeck") == nullptr && among(kOfStaticFriction));
 }
 
-std::string_view coordinate_of(std::string_view partition, std::string_view region) {
+std::string_view region_coordinate(std::string_view partition, std::string_view region) {
   if (region == "reversal") return "travel_since_reversal";
   if (region == "acceleration" || region == "braking") return "acceleration";
   if (partition == "position" || partition == "place" || partition == "order") return "position";
@@ -142,7 +142,7 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
     best = on_acceleration;
   if (best != nullptr) return {best->coordinate, (by_speed_channel ? "only in the speed channel, " : "") + best->where};
   if (const ErrorRegion* worst = worst_region(diagnosis.where))
-    return {std::string(coordinate_of(worst->partition, worst->region)), worst->words};
+    return {std::string(region_coordinate(worst->partition, worst->region)), worst->words};
   return {"time", "spread evenly over the records"};
 }
 

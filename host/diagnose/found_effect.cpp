@@ -40,7 +40,7 @@ Values difference(const Values& a, const Values& b) {
 /// The squared value, 0 for a sample without one.
 double square_of(double value) { return std::isfinite(value) ? value * value : 0.0; }
 
-double sum_of_squares(const Values& values) {
+double sum_of_finite_squares(const Values& values) {
   return std::accumulate(values.begin(), values.end(), 0.0,
                          [](double sum, double value) { return sum + square_of(value); });
 }
@@ -51,7 +51,7 @@ double carried_share(const ResidualEffort& samples, const Values& trace, const R
   for (const ScatterSeries& curve : direction_curves(samples, trace, over))
     for (std::size_t k = 0; k < curve.y.size(); ++k)
       if (std::isfinite(curve.y[k])) carried += curve.samples[k] * curve.y[k] * curve.y[k];
-  return carried / sum_of_squares(trace);
+  return carried / sum_of_finite_squares(trace);
 }
 
 /// The period over which a ripple is drawn: its own, but that of its strongest order if this is so fine that the whole
@@ -250,7 +250,7 @@ std::optional<std::array<double, 2>> interval_of(const FoundEffect& effect, cons
   return std::array{std::max(0.0, effect.size - reach), effect.size + reach};
 }
 
-double coulomb_level(const sim::DriveDescription& model) {
+double mean_coulomb(const sim::DriveDescription& model) {
   const sim::Drive drive(model);
   double sum = 0.0;
   for (std::size_t side = 0; side < drive.friction.size(); ++side)
@@ -266,7 +266,7 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
   effect.drive = model.data.kind;
   effect.of_speed_channel = info.stage == sim::Stage::tachometer;
   trace_of(effect, model, shown);
-  if (!(sum_of_squares(effect.trace) > 0.0)) return {};
+  if (!(sum_of_finite_squares(effect.trace) > 0.0)) return {};
   double most = -1.0;
   for (ResidualCoordinate& over : coordinates_of(info, entry, effect.without, model.data.kind)) {
     const double share = carried_share(effect.without, effect.trace, over);
@@ -292,7 +292,7 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
     effect.unit = shown_unit(info.parameter(id)->key(effect.drive), std::abs(entry.at(id))).name;
   effect.size = size_in(effect, model, shown, peak);
   effect.ci95 = interval_of(effect, model, shown, training, peak);
-  const double friction = coulomb_level(model);
+  const double friction = mean_coulomb(model);
   const bool acts_on_shaft = info.stage == sim::Stage::load || info.stage == sim::Stage::friction;
   if (acts_on_shaft && friction > 0.0) effect.share_of_friction = effect.size / friction;
   return effect;

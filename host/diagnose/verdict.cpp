@@ -102,7 +102,7 @@ const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosi
   return simplest;
 }
 
-std::string title_of(const std::string& kind) { return std::string(sim::find_effect(kind)->title); }
+std::string heading_of(const std::string& kind) { return std::string(sim::find_effect(kind)->title); }
 
 std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind kind) {
   std::vector<std::string> parts;
@@ -245,7 +245,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
       verdict.effects = verdict.alternatives.front();
     }
     std::vector<std::string> titles;
-    for (const std::string& kind : chosen->kinds) titles.push_back(title_of(kind));
+    for (const std::string& kind : chosen->kinds) titles.push_back(heading_of(kind));
     verdict.next_experiment = std::string(first.separate_by) + ".";
     const bool shapes_friction = std::ranges::any_of(
         chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });

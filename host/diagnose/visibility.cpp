@@ -61,7 +61,7 @@ std::vector<sim::DriveDescription> usual_sizes(const sim::EffectInfo& info, cons
                              : info.stage == sim::Stage::encoder ? kUsualEncoderError_um * (rotary ? 1e-3 : 1e-6)
                                                                  : kUsualRipple;
     const double period = slow     ? scales.travel
-                          : rotary ? 2.0 * std::numbers::pi * base.data.lead
+                          : rotary ? base.data.turn()
                                    : std::min(kUsualPitch_m, 0.1 * scales.travel);
     all.push_back(base);
     all.back().effects.push_back(

@@ -38,7 +38,7 @@ constexpr std::size_t kFormsFitted = 6;  // of each ranking
 constexpr std::size_t kMostFitted = 8, kMostWavesWeighed = 24;
 constexpr std::size_t kStarts = 4;  // starts from which the form of one kind is refined
 
-double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
+double rms_of(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
 
 /// About a dozen parameters need no more rows, and the time grows with their number times the square of the memory's
 /// columns.
@@ -66,7 +66,7 @@ std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vect
   const double log_unit = static_cast<double>(columns.rows()) * std::log(acting);
   Form form{std::move(kind), columns, log_unit, std::move(term), std::move(sign)};
   for (Index c = 0; c < columns.cols(); ++c) {
-    const double size = rms(columns.col(c));
+    const double size = rms_of(columns.col(c));
     if (!(size > 0.0) || !std::isfinite(size)) return {};
     form.columns.col(c) /= size;
   }
@@ -117,7 +117,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
   const auto rows_count = static_cast<Index>(thin_.rows.size());
   base_.columns.resize(rows_count, 0);
   std::vector<double> deviations;
-  const double size = rms(thin_.rows.effort);
+  const double size = rms_of(thin_.rows.effort);
   MatrixXd all(rows_count, 0);
   for (const EffortTerm& term : base) {
     if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // the inertia is zero at steady speeds
@@ -128,7 +128,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
   const VectorXd factors = least_norm_solution(all, thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
     if (double& deviation = deviations[static_cast<std::size_t>(c)]; !(deviation > 0.0))
-      deviation = kBaseKnownTo * std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300));
+      deviation = kBaseKnownTo * std::max(std::abs(factors(c)), 0.05 * size / std::max(rms_of(all.col(c)), 1e-300));
   base_.columns = all;
   base_.deviations = Eigen::Map<const VectorXd>(deviations.data(), static_cast<Index>(deviations.size()));
 }
@@ -146,7 +146,7 @@ EffortHypotheses::Known EffortHypotheses::known_with(const std::vector<EffortTer
   for (const EffortTerm& term : chosen) {
     const MatrixXd columns = thin_.of(term.columns);
     for (Index c = 0; c < columns.cols(); ++c)
-      known.add(columns.col(c), kTails[kTailCount - 1] * kUsual * coulomb_ / std::max(rms(columns.col(c)), 1e-300));
+      known.add(columns.col(c), kTails[kTailCount - 1] * kUsual * coulomb_ / std::max(rms_of(columns.col(c)), 1e-300));
   }
   return known;
 }
@@ -191,7 +191,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
     const VectorXd left = thin_.of(rows_.effort - explained);
-    const double turn = turn_of(model_.data);
+    const double turn = model_.data.turn();
     const auto weigh_waves = [&](const std::string& kind, const std::vector<Wave>& waves, const WaveColumns& columns_of,
                                  const std::function<EffortTerm(const Wave&)>& term_of) {
       const std::vector<double> priors = log_priors(waves, model_.data);

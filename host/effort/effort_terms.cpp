@@ -40,11 +40,6 @@ bool append(sim::DriveDescription& model, std::string_view kind, const std::map<
   return append_within_bounds(model, std::move(entry));
 }
 
-double coulomb_level(const sim::DriveDescription& model) {
-  const sim::Drive drive(model);
-  return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
-}
-
 bool is_linear(const sim::EffectEntry& entry) {
   constexpr std::string_view kLinear[] = {"constant_torque", "dac_offset", "cogging", "encoder_cyclic_error"};
   return std::ranges::find(kLinear, entry.kind) != std::end(kLinear);
@@ -146,6 +141,11 @@ EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRo
 }
 
 }  // namespace
+
+double coulomb_level(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+}
 
 std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms) {
   std::vector<const EffortTerm*> pointers;

@@ -41,6 +41,9 @@ std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms)
 /// Adds an effect to a model; false if a parameter exceeds the catalogue's bounds.
 bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry);
 
+/// Coulomb friction of the model, mean of both directions, Nm or N; without the factors of an asymmetry.
+double coulomb_level(const sim::DriveDescription& model);
+
 /// The terms of the base: inertia, viscous and Coulomb friction in the model's form, the model's further effects with a
 /// linear form, and the time offset of a logged current, which is not part of the model.
 std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const EffortRows& rows);

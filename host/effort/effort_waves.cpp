@@ -28,11 +28,6 @@ constexpr double kLeastOfATurn = 0.25;
 
 double travel_of(const EffortRows& rows) { return rows.x.maxCoeff() - rows.x.minCoeff(); }
 
-double coulomb_level(const sim::DriveDescription& model) {
-  const sim::Drive drive(model);
-  return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
-}
-
 std::string words_of(const std::vector<double>& orders, double period, sim::DriveKind kind) {
   return fmt::format("{} {:g} of {:.5g} {}", orders.size() == 1 ? "order" : "orders", fmt::join(orders, ", "), period,
                      kind == sim::DriveKind::rotary ? "mm" : "m");
@@ -57,10 +52,6 @@ bool write_wave(const std::string& kind, const Wave& wave, double cosine, double
 
 }  // namespace
 
-double turn_of(const sim::DataSheet& data) {
-  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
-}
-
 double shortest_wave(const sim::DataSheet& data, const EffortRows& rows) {
   std::vector<double> speeds(rows.w.size());
   std::ranges::transform(rows.w, speeds.begin(), [](double w) { return std::abs(w); });
@@ -70,7 +61,7 @@ double shortest_wave(const sim::DataSheet& data, const EffortRows& rows) {
 }
 
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest) {
-  const double travel = travel_of(rows), turn = turn_of(data), shortest = shortest_wave(data, rows);
+  const double travel = travel_of(rows), turn = data.turn(), shortest = shortest_wave(data, rows);
   std::vector<Wave> waves;
   if (!(travel > 0.0)) return waves;
   if (turn > 0.0 && travel > kLeastOfATurn * turn) {
@@ -87,7 +78,7 @@ std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows,
 }
 
 std::vector<double> log_priors(const std::vector<Wave>& waves, const sim::DataSheet& data) {
-  const double turn = turn_of(data);
+  const double turn = data.turn();
   double of_turn = 0.0, free = 0.0;
   for (const Wave& wave : waves) (wave.period == turn ? of_turn : free) += 1.0 / wave.order;
   const double half = of_turn > 0.0 && free > 0.0 ? 0.5 : 1.0;
@@ -147,7 +138,7 @@ EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows,
   };
   term.can_repeat = true;
   term.words = words_of({wave.order}, wave.period, model.data.kind);
-  if (wave.period == turn_of(model.data)) return term;
+  if (wave.period == model.data.turn()) return term;
   term.neighbours = [&model, &rows, kind, columns_of, wave](double part) {
     constexpr double kWaves = 8.0;  // the largest part is a quarter of a wave over the travel
     std::vector<std::function<EffortTerm()>> around;

@@ -17,9 +17,6 @@ struct Wave {
   double order;
 };
 
-/// Travel of one turn of the shaft, mm; 0 for a linear drive.
-double turn_of(const sim::DataSheet& data);
-
 /// Shortest period, mm or m: the filter removes shorter waves, or the encoder's steps cause them.
 double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
 

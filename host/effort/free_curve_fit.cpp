@@ -80,7 +80,7 @@ std::optional<double> period_of(const EffortScreen& screen) {
   for (const PeriodPeak& peak : find_periods(signal, shortest, travel / kPeriodsOfTravel, kPeaks))
     for (const double multiple : {1.0, 2.0, 3.0, 4.0})
       if (multiple * peak.period < travel / 2.0) periods.push_back(multiple * peak.period);
-  if (const double turn = turn_of(screen.base.model.data); turn > 0.0 && turn < travel) periods.push_back(turn);
+  if (const double turn = screen.base.model.data.turn(); turn > 0.0 && turn < travel) periods.push_back(turn);
   std::ranges::sort(periods);
   std::optional<double> best;
   const Mask judges =
@@ -113,7 +113,7 @@ std::optional<Coordinate> coordinate_of(const EffortScreen& screen, std::string_
   return Coordinate{over == "friction_along_position" ? rows.x : travel_since_reversal(rows), direction};
 }
 
-std::vector<double> even_knots(double period, std::size_t count) {
+std::vector<double> periodic_knots(double period, std::size_t count) {
   std::vector<double> knots;
   for (std::size_t n = 0; n < count; ++n)
     knots.push_back(period * static_cast<double>(n) / static_cast<double>(count - 1));
@@ -123,7 +123,7 @@ std::vector<double> even_knots(double period, std::size_t count) {
 /// Knots with equal numbers of training rows between them, or with equal distances over a period.
 std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinate, std::size_t count) {
   const VectorXd& at = coordinate.at;
-  if (coordinate.period > 0.0) return even_knots(coordinate.period, count);
+  if (coordinate.period > 0.0) return periodic_knots(coordinate.period, count);
   std::vector<double> sorted;
   for (Index k = 0; k < at.size(); ++k)
     if (!rows.judges[static_cast<std::size_t>(k)]) sorted.push_back(at(k));
@@ -138,7 +138,7 @@ std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinat
 }
 
 /// Value of each knot's hat function in each row; the hats sum to 1.
-MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
+MatrixXd curve_hats(const Coordinate& coordinate, const std::vector<double>& knots) {
   MatrixXd columns = MatrixXd::Zero(coordinate.at.size(), static_cast<Index>(knots.size()));
   for (Index k = 0; k < coordinate.at.size(); ++k) {
     const double q = std::clamp(coordinate.at(k), knots.front(), knots.back());
@@ -179,7 +179,7 @@ std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view 
   const EffortRows& rows = screen.rows;
   const std::vector<double> knots = knots_of(rows, coordinate, count);
   if (knots.size() < 2) return {};
-  EffortTerm term{"free_curve", hats(coordinate, knots), {}, {}, {}};
+  EffortTerm term{"free_curve", curve_hats(coordinate, knots), {}, {}, {}};
   term.sign.assign(static_cast<std::size_t>(term.columns.cols()), 0);
   MatrixXd seen = term.columns;
   for (Index k = 0; k < seen.rows(); ++k)

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "host/identify/encoder_step.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -30,10 +31,6 @@ struct AffineFit {
   double left = 1.0;   ///< unexplained part of the variance
   double worst = 1.0;  ///< largest residual over the channel's range
 };
-
-bool is_constant(const std::vector<double>& values) {
-  return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
-}
 
 AffineFit affine_fit(const std::vector<double>& of, const std::vector<double>& by) {
   const auto n = static_cast<double>(of.size());

@@ -14,7 +14,7 @@ namespace host {
 namespace {
 
 constexpr double kAtLevel = 0.999;           ///< of the largest command
-constexpr double kLeastShare = 0.002;        ///< of all rows
+constexpr double kLeastClipped = 0.002;      ///< of all rows
 constexpr double kBelowLimit = 0.98;         ///< closer to its limit, the converter itself clips the command
 constexpr double kLeastExcess = 0.15;        ///< of the level; more than a deviation from Coulomb friction can cause
 constexpr double kLeastExcessByModel = 0.5;  ///< a first model may be wrong by a third
@@ -61,7 +61,7 @@ std::optional<ClippedCommand> clipped_command(const Record& record, const sim::D
   for (const double u_V : record.u_V)
     if (std::abs(u_V) >= kAtLevel * level_V) ++at_level;
   const double share = static_cast<double>(at_level) / static_cast<double>(record.size());
-  if (!(level_V > 0.0) || limited || share < kLeastShare) return std::nullopt;
+  if (!(level_V > 0.0) || limited || share < kLeastClipped) return std::nullopt;
 
   MotionOptions options;
   options.decimation = 1;

@@ -13,7 +13,7 @@ namespace host {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+using std::numbers::pi;
 
 /// Sums of the signal on a grid of travel, and the power of their spectrum at the grid's harmonics.
 std::vector<double> power_spectrum(const TravelSignal& signal, double origin, double cell, std::size_t cells) {
@@ -44,8 +44,8 @@ PeriodPeak refine(const TravelSignal& signal, double order, double order_step) {
 PeriodPeak peak_at(const TravelSignal& signal, double period) {
   double cc = 0.0, cs = 0.0, ss = 0.0, cv = 0.0, sv = 0.0, vv = 0.0;
   for (std::size_t k = 0; k < signal.x.size(); ++k) {
-    const double c = signal.weight[k] * std::cos(kTwoPi * signal.x[k] / period);
-    const double s = signal.weight[k] * std::sin(kTwoPi * signal.x[k] / period);
+    const double c = signal.weight[k] * std::cos(2.0 * pi * signal.x[k] / period);
+    const double s = signal.weight[k] * std::sin(2.0 * pi * signal.x[k] / period);
     const double v = signal.value[k];
     cc += c * c;
     cs += c * s;

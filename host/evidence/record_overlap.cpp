@@ -12,7 +12,7 @@ namespace host {
 namespace {
 
 constexpr std::size_t kFewestSharedRows = 50;
-constexpr double kShortest_s = 0.1;
+constexpr double kShortestOverlap_s = 0.1;
 /// Least number of different readings in an interval with motion. With fewer, standstill or creep by a few encoder
 /// steps could be equal by chance.
 constexpr std::size_t kFewestReadings = 15;
@@ -46,7 +46,7 @@ RecordOverlap record_overlap(const Record& first, const Record& second) {
   for (const auto channel : kMeasured)
     if ((first.*channel).empty() != (second.*channel).empty()) return overlap;
   const auto length =
-      std::max(kFewestSharedRows, static_cast<std::size_t>(std::lround(kShortest_s / second.sample_period_s)));
+      std::max(kFewestSharedRows, static_cast<std::size_t>(std::lround(kShortestOverlap_s / second.sample_period_s)));
   if (first.size() < length || second.size() < length) return overlap;
   const std::vector<std::uint64_t> a = row_hashes(first), b = row_hashes(second);
 

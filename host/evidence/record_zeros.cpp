@@ -34,7 +34,7 @@ constexpr double kAsGood = 0.8;
 constexpr double kPeriodsOfTravel = 4.0;
 constexpr std::size_t kPeaks = 5;
 /// More rows than this take time without adding information.
-constexpr std::size_t kMostRows = 3000;
+constexpr std::size_t kMostSpeeds = 3000;
 
 /// The pattern is constant in size (cogging), or proportional to the direction (friction) or to the torque (torque
 /// ripple).
@@ -72,7 +72,7 @@ std::optional<TravelResidual> travel_residual(const Record& record, const sim::D
   if (!(top > 0.0)) return {};
   const std::optional<Motion> motion = motion_if_long_enough(record, data, options);
   if (!motion) return {};
-  const std::size_t stride = 1 + motion->speed.size() / kMostRows;
+  const std::size_t stride = 1 + motion->speed.size() / kMostSpeeds;
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < motion->speed.size(); k += stride)
     if (motion->counts[k]) rows.push_back(k);

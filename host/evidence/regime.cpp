@@ -18,7 +18,7 @@ constexpr double kLowSpeed = 0.05;
 constexpr double kConstantSpeed = 0.1;
 
 /// A reversal counts once the axis has moved back by this many encoder steps.
-constexpr double kBelievedSteps = 2.0;
+constexpr double kStepsOfTravel = 2.0;
 
 /// The acceleration is computed over this many samples on each side.
 constexpr std::size_t kRowsAround = 3;
@@ -67,7 +67,7 @@ std::string_view regime_name(Regime regime) {
 
 double reversal_travel(const sim::DataSheet& data) {
   const double travel = data.kind == sim::DriveKind::rotary ? 1000.0 * kReversalTravel_m : kReversalTravel_m;
-  return std::max(travel, 2.0 * kBelievedSteps * data.encoder_resolution);
+  return std::max(travel, 2.0 * kStepsOfTravel * data.encoder_resolution);
 }
 
 std::vector<Regime> regimes_of(const PreparedRecord& prepared, const sim::DataSheet& data) {
@@ -82,7 +82,7 @@ std::vector<Regime> regimes_of(const PreparedRecord& prepared, const sim::DataSh
   for (const double w : motion.w) top_speed = std::max(top_speed, std::abs(w));
   const std::vector<bool> reversed =
       rows_after_reversals(motion.x, reversal_travel(data),
-                           std::max(kBelievedSteps * data.encoder_resolution, 1e-3 * reversal_travel(data)));
+                           std::max(kStepsOfTravel * data.encoder_resolution, 1e-3 * reversal_travel(data)));
   const double limit_V = data.dac_limit_V - 0.51 * data.dac_resolution_V;
   std::vector<Regime> regimes(n);
   for (std::size_t k = 0; k < n; ++k) {

@@ -22,7 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kLongestReply = 4096;
 
 /// False once the deadline has passed.
 bool wait_for(int descriptor, short event, steady_clock::time_point deadline) {
@@ -118,7 +118,7 @@ void PlantProgram::send(std::string_view text, steady_clock::time_point deadline
 }
 
 void PlantProgram::fetch(steady_clock::time_point deadline) {
-  std::array<char, kLongestLine> part{};
+  std::array<char, kLongestReply> part{};
   const ssize_t got = ::read(from_, part.data(), part.size());
   if (got > 0) {
     buffer_.append(part.data(), static_cast<std::size_t>(got));
@@ -138,7 +138,7 @@ std::string PlantProgram::ask(std::string_view line, milliseconds patience) {
   send(line, deadline);
   std::size_t end = 0;
   while ((end = buffer_.find('\n')) == std::string::npos) {
-    if (buffer_.size() > kLongestLine) {
+    if (buffer_.size() > kLongestReply) {
       last_ = buffer_;
       throw Failure(ExitCode::protocol, complaint("sends a line without end"));
     }

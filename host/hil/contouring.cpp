@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-constexpr double kRest_s = 0.4;  // as in the paper's Fig. 11
+constexpr double kPaperRest_s = 0.4;  // as in the paper's Fig. 11
 
 double worst_between(const std::vector<double>& t_s, const std::vector<double>& values, double begin_s, double end_s) {
   double worst = 0.0;
@@ -72,12 +72,12 @@ double ContouringRun::worst_tracking_um(std::size_t axis) const {
 double ContouringRun::worst_contour_um() const { return worst_between(t_s, contour_um, begin_s, end_s); }
 
 double ContouringRun::standing_before_um() const {
-  const double settled_s = begin_s - kRest_s / 2.0, last_s = begin_s - 0.01;
+  const double settled_s = begin_s - kPaperRest_s / 2.0, last_s = begin_s - 0.01;
   return std::max(worst_between(t_s, tracking_um[0], settled_s, last_s),
                   worst_between(t_s, tracking_um[1], settled_s, last_s));
 }
 double ContouringRun::standing_after_um() const {
-  const double settled_s = end_s + kRest_s / 2.0;
+  const double settled_s = end_s + kPaperRest_s / 2.0;
   return std::max(worst_between(t_s, tracking_um[0], settled_s, t_s.back()),
                   worst_between(t_s, tracking_um[1], settled_s, t_s.back()));
 }
@@ -89,7 +89,7 @@ ContouringRun run_contour(const std::array<MachineAxis, hal::kAxisCount>& axes, 
   ContourDriver driver(machine);
   driver.move_to(-approach_mm, approach_mm);
   driver.move_to(0.0, 0.0);
-  driver.rest(kRest_s);
+  driver.rest(kPaperRest_s);
 
   ContouringRun run;
   const std::array<double, 2> count_mm{axes[0].drive.data.encoder_resolution, axes[1].drive.data.encoder_resolution};
@@ -97,7 +97,7 @@ ContouringRun run_contour(const std::array<MachineAxis, hal::kAxisCount>& axes, 
   for (const auto& increments : follow_path(path, limits, machine.sample_period_s(), count_mm))
     driver.follow(increments);
   run.end_s = driver.recorder().record(0).t_s.back();
-  driver.rest(kRest_s);
+  driver.rest(kPaperRest_s);
 
   const Recorder& recorder = driver.recorder();
   run.t_s = recorder.record(0).t_s;

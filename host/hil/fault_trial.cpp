@@ -70,9 +70,9 @@ MachineAxes axes_of(const FaultTrial& trial) {
   return axes;
 }
 
-class Trial {
+class TrialRun {
  public:
-  explicit Trial(const FaultTrial& trial) : trial_(trial), axes_(axes_of(trial)), machine_(axes_, trial.seed) {}
+  explicit TrialRun(const FaultTrial& trial) : trial_(trial), axes_(axes_of(trial)), machine_(axes_, trial.seed) {}
 
   TrialOutcome run() {
     prepare();
@@ -360,7 +360,7 @@ std::string FaultTrial::text() const {
       motion == TrialMotion::stopping ? fmt::format(" and {}", since_disable) : "", seed);
 }
 
-TrialOutcome run_trial(const FaultTrial& trial) { return Trial(trial).run(); }
+TrialOutcome run_trial(const FaultTrial& trial) { return TrialRun(trial).run(); }
 
 std::string fault_page() {
   std::string page =

@@ -17,7 +17,7 @@ namespace host {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double distance(const PlanePoint& a, const PlanePoint& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -48,8 +48,8 @@ double PathSegment::distance_to(const PlanePoint& point) const {
   }
   const double start = std::atan2(begin.y - centre.y, begin.x - centre.x);
   const double seen = std::atan2(point.y - centre.y, point.x - centre.x);
-  double turned = std::remainder(seen - start, 2.0 * kPi);
-  if (turned * angle < 0.0) turned += std::copysign(2.0 * kPi, angle);
+  double turned = std::remainder(seen - start, 2.0 * pi);
+  if (turned * angle < 0.0) turned += std::copysign(2.0 * pi, angle);
   if (std::abs(turned) <= std::abs(angle)) return std::abs(distance(point, centre) - distance(begin, centre));
   return std::min(distance(point, begin), distance(point, at(whole)));
 }
@@ -62,12 +62,12 @@ Path Path::line(const PlanePoint& end) {
 
 Path Path::circle(double radius_mm, int turns) {
   Path path;
-  path.segments_.push_back(arc({0.0, 0.0}, {radius_mm, 0.0}, 2.0 * kPi * turns));
+  path.segments_.push_back(arc({0.0, 0.0}, {radius_mm, 0.0}, 2.0 * pi * turns));
   return path;
 }
 
 std::optional<PathSegment> Path::whole_circle() const {
-  if (segments_.size() != 1 || std::abs(segments_.front().angle) < 2.0 * kPi) return {};
+  if (segments_.size() != 1 || std::abs(segments_.front().angle) < 2.0 * pi) return {};
   return segments_.front();
 }
 
@@ -82,13 +82,13 @@ Path Path::rounded_square(double side_mm, double corner_radius_mm) {
   Path path;
   auto& pieces = path.segments_;
   pieces.push_back(line_between({0.0, 0.0}, {straight, 0.0}));
-  pieces.push_back(arc({straight, 0.0}, {straight, r}, kPi / 2));
+  pieces.push_back(arc({straight, 0.0}, {straight, r}, pi / 2));
   pieces.push_back(line_between({half, r}, {half, side_mm - r}));
-  pieces.push_back(arc({half, side_mm - r}, {straight, side_mm - r}, kPi / 2));
+  pieces.push_back(arc({half, side_mm - r}, {straight, side_mm - r}, pi / 2));
   pieces.push_back(line_between({straight, side_mm}, {-straight, side_mm}));
-  pieces.push_back(arc({-straight, side_mm}, {-straight, side_mm - r}, kPi / 2));
+  pieces.push_back(arc({-straight, side_mm}, {-straight, side_mm - r}, pi / 2));
   pieces.push_back(line_between({-half, side_mm - r}, {-half, r}));
-  pieces.push_back(arc({-half, r}, {-straight, r}, kPi / 2));
+  pieces.push_back(arc({-half, r}, {-straight, r}, pi / 2));
   pieces.push_back(line_between({-straight, 0.0}, {0.0, 0.0}));
   return path;
 }

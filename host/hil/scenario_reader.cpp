@@ -18,8 +18,8 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
-constexpr double kLongest_s = 600.0;
-constexpr double kFarthest_mm = 1e6;
+constexpr double kLongestScenario_s = 600.0;
+constexpr double kLargest_mm = 1e6;
 const Names kAxes(kAxisNames.begin(), kAxisNames.end());
 const Names kMoves{"jog", "move_to", "stop", "circle", "square", "enable", "disable", "clear"};
 
@@ -37,8 +37,8 @@ class ScenarioReader {
     if (seed > 1e9) top.fail("seed", "it must be at most 1e9");
     scenario_.seed = static_cast<std::uint64_t>(seed);
     scenario_.duration_s = top.positive("duration_s", 1.0);
-    if (scenario_.duration_s > kLongest_s)
-      top.fail("duration_s", fmt::format("at most {:g} s are simulated; split the scenario", kLongest_s));
+    if (scenario_.duration_s > kLongestScenario_s)
+      top.fail("duration_s", fmt::format("at most {:g} s are simulated; split the scenario", kLongestScenario_s));
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) read_axis(top, i);
     if (scenario_.axes[0].drive.data.sample_period_s != scenario_.axes[1].drive.data.sample_period_s)
       top.fail("y", "both axes of a board have one sample period; give their drives the same");
@@ -127,7 +127,7 @@ class ScenarioReader {
       for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
         const std::string axis(kAxisNames[i]);
         sim::GuidewayErrors& errors = scenario_.table.axis[i];
-        scenario_.table.centre_mm[i] = within(from, "centre_" + axis + "_mm", kFarthest_mm);
+        scenario_.table.centre_mm[i] = within(from, "centre_" + axis + "_mm", kLargest_mm);
         errors.scale_ppm = within(from, "scale_" + axis + "_ppm", kMost);
         errors.bow_um = within(from, "bow_" + axis + "_um", kMost);
         errors.play_um = within(from, "play_" + axis + "_um", kMost);
@@ -197,8 +197,8 @@ class ScenarioReader {
       move.axis = from.choice("axis", kAxes);
       if (move.kind == MoveKind::jog) move.speed_mm_s = from.number("speed_mm_s");
       if (move.kind == MoveKind::move_to) move.target_mm = from.number("target_mm");
-      if (std::abs(move.target_mm) > kFarthest_mm)
-        from.fail("target_mm", fmt::format("it must be within {:g} mm", kFarthest_mm));
+      if (std::abs(move.target_mm) > kLargest_mm)
+        from.fail("target_mm", fmt::format("it must be within {:g} mm", kLargest_mm));
     }
     from.refuse_rest();
     scenario_.moves.push_back(std::move(move));
@@ -206,7 +206,7 @@ class ScenarioReader {
 
   static double length_mm(TomlFields& from, std::string_view key, double otherwise) {
     const double length = from.positive(key, otherwise);
-    if (length > kFarthest_mm) from.fail(key, fmt::format("it must be at most {:g} mm", kFarthest_mm));
+    if (length > kLargest_mm) from.fail(key, fmt::format("it must be at most {:g} mm", kLargest_mm));
     return length;
   }
 
@@ -225,8 +225,8 @@ class ScenarioReader {
     move.path_limits.feed = from.positive("feed_mm_s", move.path_limits.feed);
     move.path_limits.acceleration = from.positive("acceleration_mm_s2", move.path_limits.acceleration);
     move.path_limits.jerk = from.positive("jerk_mm_s3", move.path_limits.jerk);
-    if (move.path->length() / move.path_limits.feed > kLongest_s)
-      from.fail("feed_mm_s", fmt::format("the path would last longer than {:g} s", kLongest_s));
+    if (move.path->length() / move.path_limits.feed > kLongestScenario_s)
+      from.fail("feed_mm_s", fmt::format("the path would last longer than {:g} s", kLongestScenario_s));
   }
 
   void read_fault(const toml::table& table) {

@@ -12,7 +12,7 @@ namespace host {
 
 namespace {
 
-constexpr double kLeastSliding_s = 0.1;
+constexpr double kLeastEachWay_s = 0.1;
 
 const char* speed_unit(const sim::DataSheet& data) { return data.kind == sim::DriveKind::rotary ? "rad/s" : "m/s"; }
 
@@ -70,7 +70,7 @@ ExcitationSummary summarise_excitation(const std::vector<Record>& records, const
   }
   summary.peak_effort = percentile_of_magnitude(std::move(efforts), 0.99);
   // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can show in 0.1 s.
-  const double fake = data.encoder_resolution / data.lead / kLeastSliding_s * 10.0;
+  const double fake = data.encoder_resolution / data.lead / kLeastEachWay_s * 10.0;
   summary.threshold = motions.front().deadband;
   if (!(summary.threshold > 0.0)) summary.threshold = std::max(0.01 * summary.top_speed, fake);
   for (const Motion& motion : motions) {
@@ -83,7 +83,7 @@ ExcitationSummary summarise_excitation(const std::vector<Record>& records, const
 }
 
 void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data) {
-  const bool forward = summary.forward_s >= kLeastSliding_s, backward = summary.backward_s >= kLeastSliding_s;
+  const bool forward = summary.forward_s >= kLeastEachWay_s, backward = summary.backward_s >= kLeastEachWay_s;
   if (forward && backward) return;
   const char* what = forward || backward ? "the axis moved in one direction only" : "the axis did not move enough";
   throw Failure(ExitCode::refused,

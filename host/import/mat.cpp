@@ -67,12 +67,12 @@ std::string size_of(const matvar_t& variable) {
 }
 
 /// A part of an array in the library's memory: every `stride`-th element from `first` on, `count` in all.
-struct Stretch {
+struct ValueRange {
   std::size_t first, count, stride;
 };
 
 template <typename T>
-std::vector<double> as_doubles(const void* data, const Stretch& stretch) {
+std::vector<double> as_doubles(const void* data, const ValueRange& stretch) {
   const T* at = static_cast<const T*>(data) + stretch.first;
   std::vector<double> values(stretch.count);
   for (std::size_t k = 0; k < stretch.count; ++k) values[k] = static_cast<double>(at[k * stretch.stride]);
@@ -81,7 +81,7 @@ std::vector<double> as_doubles(const void* data, const Stretch& stretch) {
 
 /// The numbers; empty if the array contains no real numbers. Every element is converted to a double before any
 /// computation, so that integers neither wrap nor saturate.
-std::vector<double> numbers_of(const matvar_t& variable, const Stretch& stretch) {
+std::vector<double> numbers_of(const matvar_t& variable, const ValueRange& stretch) {
   if (variable.isComplex != 0 || variable.data == nullptr) return {};
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -134,7 +134,7 @@ void append_array(const matvar_t& variable, const std::string& name, const std::
     log.columns.push_back(
         {fmt::format("{}({})", name, c + 1),
          fmt::format("{} of {}", samples_run_down ? "column" : "row", kind),
-         numbers_of(variable, samples_run_down ? Stretch{c * rows, rows, 1} : Stretch{c, columns, rows}),
+         numbers_of(variable, samples_run_down ? ValueRange{c * rows, rows, 1} : ValueRange{c, columns, rows}),
          {}});
 }
 

@@ -18,7 +18,7 @@ namespace {
 }
 
 /// One field of a row: "<f8" at its offset.
-struct Field {
+struct Member {
   std::string name;
   char kind = 'f';  ///< f, i, u, b
   bool big_end_first = false;
@@ -32,7 +32,7 @@ double number_at(const std::array<char, 8>& bytes) {
   return static_cast<double>(value);
 }
 
-double value_of(const Field& field, const char* place) {
+double value_of(const Member& field, const char* place) {
   std::array<char, 8> bytes{};
   std::copy_n(place, field.size, bytes.begin());
   if (field.big_end_first) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(field.size));
@@ -126,7 +126,7 @@ class NpyReader {
   }
 
   void add_field(std::string name, std::string_view type) {
-    Field field{std::move(name), 'f', false, 0, row_size()};
+    Member field{std::move(name), 'f', false, 0, row_size()};
     const std::string_view order = type.substr(0, 1);
     if (type.size() == 3 && (order == "<" || order == ">" || order == "|")) {
       field.big_end_first = order == ">";
@@ -163,7 +163,7 @@ class NpyReader {
   std::size_t row_size() const { return fields_.empty() ? 0 : fields_.back().offset + fields_.back().size; }
 
   LogColumn column(std::size_t number) const {
-    const Field& field = fields_[columns_ == 1 ? number : 0];
+    const Member& field = fields_[columns_ == 1 ? number : 0];
     const std::size_t across = columns_ == 1 ? 0 : number, size = row_size();
     LogColumn result{field.name, fmt::format("{}{}, {} numbers", field.kind, 8 * field.size, rows_), {}, {}, 0.0};
     result.values.reserve(rows_);
@@ -175,7 +175,7 @@ class NpyReader {
   }
 
   std::string_view bytes_, path_, header_;
-  std::vector<Field> fields_;
+  std::vector<Member> fields_;
   std::size_t rows_ = 0, columns_ = 1;
   bool by_columns_ = false;
 };

@@ -52,7 +52,7 @@ const SqliteLibrary& sqlite_library() {
 }
 
 /// URI of a file that SQLite opens as immutable, so without locks and without a journal beside it.
-std::string address_of(const std::string& path) {
+std::string uri_of(const std::string& path) {
   std::string address = "file:";
   for (const char c : path)
     address +=
@@ -64,7 +64,7 @@ class RosbagReader {
  public:
   explicit RosbagReader(const std::string& path) : path_(path), sqlite_(sqlite_library()) {
     constexpr int kLargestMessage = 64 << 20;
-    if (sqlite_.open(address_of(path).c_str(), &file_, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX,
+    if (sqlite_.open(uri_of(path).c_str(), &file_, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX,
                      nullptr) != SQLITE_OK)
       fail();
     sqlite_.limit(file_, SQLITE_LIMIT_LENGTH, kLargestMessage);

@@ -22,7 +22,7 @@ constexpr double kDegrees = 4.0;
 constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Starting size of a fit that searches for a large memory.
 constexpr double kLargeSize = 0.1;
-constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
+constexpr int kMostWeighings = 12, kRoundsToSettle = 3, kSizesARound = 8;
 /// Smallest gain of a round, nats, after which a further round follows.
 constexpr double kSettled = 0.02;
 
@@ -98,7 +98,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   MatrixXd products;
   VectorXd white_y, deviations_now;
   MatrixXd white;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostWeighings; ++round) {
     white = whiten(all, fit.colour);
     white_y = whiten(y_, fit.colour);
     if (square < 0.0)
@@ -130,7 +130,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     fit.weights = unit_weights / square;
     fit.noise = std::sqrt(square);
     const bool is_behind = round + 1 >= kRoundsToSettle && log_evidence < start.give_up;
-    if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostRounds) break;
+    if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostWeighings) break;
     before = log_evidence;
     fit.colour = colour_of(kind_, y_ - all * factors, unit_weights, runs_);
   }

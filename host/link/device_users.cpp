@@ -24,7 +24,7 @@ int process_of(const fs::path& folder) {
   return fault == std::errc() && end == name.data() + name.size() ? number : 0;
 }
 
-bool holds(const fs::path& process, const fs::path& file) {
+bool holds_open(const fs::path& process, const fs::path& file) {
   std::error_code fault;
   for (fs::directory_iterator open(process / "fd", fault), end; !fault && open != end; open.increment(fault)) {
     std::error_code unreadable;
@@ -51,7 +51,7 @@ std::vector<DeviceUser> users_of(const std::string& file) {
   if (fault) return users;
   for (fs::directory_iterator process("/proc", fault), end; !fault && process != end; process.increment(fault)) {
     const int number = process_of(process->path());
-    if (number != 0 && number != ::getpid() && holds(process->path(), wanted))
+    if (number != 0 && number != ::getpid() && holds_open(process->path(), wanted))
       users.push_back({number, command_of(process->path())});
   }
   std::ranges::sort(users, {}, &DeviceUser::process);

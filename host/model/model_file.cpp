@@ -25,7 +25,7 @@ namespace {
 using sim::DriveKind;
 using Names = std::vector<std::string_view>;
 
-constexpr std::string_view kFormat = "axis-model/1";
+constexpr std::string_view kModelFormat = "axis-model/1";
 constexpr std::string_view kIntervalSuffix = "_ci95";
 constexpr std::string_view kHeldSuffix = "_held";
 constexpr std::string_view kDeviationSuffix = "_sd";
@@ -41,8 +41,8 @@ class ModelReader {
   sim::DriveDescription read(bool effects_required) {
     refuse_unknown(root_, {"format", "name", "drive", "effect"}, "at the top");
     const std::string format = text_at(root_, "format", "the top", true);
-    if (format != kFormat)
-      fail(line_of(*root_.get("format")), "format: '{}' is unknown; this program reads {}", format, kFormat);
+    if (format != kModelFormat)
+      fail(line_of(*root_.get("format")), "format: '{}' is unknown; this program reads {}", format, kModelFormat);
     model_.name = text_at(root_, "name", "the top", false);
     read_data_sheet();
     read_effects(effects_required);

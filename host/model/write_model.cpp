@@ -21,13 +21,10 @@ namespace host {
 
 namespace {
 
-/// The shortest text that gives the same number when it is read, and that is a float in TOML.
-std::string number(double value) {
+std::string finite_number(double value) {
   if (!std::isfinite(value))
     throw Failure(ExitCode::bad_input, "a model value is not a finite number: the fit that made it has failed");
-  std::string text = fmt::format("{}", value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
+  return toml_number(value);
 }
 
 void append_data_sheet(const sim::DataSheet& data, std::string& text) {
@@ -41,23 +38,25 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
     if (data.*field.value == 0.0 && !field.zero_allowed && field.presence == Presence::optional) continue;
     if (field.table != table) fmt::format_to(out, "\n[drive.{}]\n", field.table);
     table = field.table;
-    fmt::format_to(out, "{} = {}\n", field.key, number(data.*field.value));
+    fmt::format_to(out, "{} = {}\n", field.key, finite_number(data.*field.value));
   }
   if (data.tach_noise_variance)
-    fmt::format_to(out, "\n[drive.tach]\n{} = {}\n", tach_noise_key(data.kind), number(*data.tach_noise_variance));
+    fmt::format_to(out, "\n[drive.tach]\n{} = {}\n", tach_noise_key(data.kind),
+                   finite_number(*data.tach_noise_variance));
 }
 
 /// The value of a parameter and its additional fields: "J_kg_m2 = 0.1", "J_kg_m2_ci95 = [0.09, 0.11]", …
 std::vector<std::string> fields_of(const sim::EffectEntry& entry, const std::string& id, std::string_view key) {
-  std::vector<std::string> fields = {fmt::format("{} = {}", key, number(entry.at(id)))};
+  std::vector<std::string> fields = {fmt::format("{} = {}", key, finite_number(entry.at(id)))};
   // An interval that does not contain the value is from an earlier fit.
   if (const auto interval = entry.ci95.find(id); interval != entry.ci95.end() && holds(interval->second, entry.at(id)))
-    fields.push_back(fmt::format("{}_ci95 = [{}, {}]", key, number(interval->second[0]), number(interval->second[1])));
+    fields.push_back(
+        fmt::format("{}_ci95 = [{}, {}]", key, finite_number(interval->second[0]), finite_number(interval->second[1])));
   if (entry.held.contains(id)) fields.push_back(fmt::format("{}_held = true", key));
   if (const auto belief = entry.believed.find(id); belief != entry.believed.end()) {
-    fields.push_back(fmt::format("{}_sd = {}", key, number(belief->second.deviation)));
+    fields.push_back(fmt::format("{}_sd = {}", key, finite_number(belief->second.deviation)));
     if (belief->second.value != entry.at(id))
-      fields.push_back(fmt::format("{}_given = {}", key, number(belief->second.value)));
+      fields.push_back(fmt::format("{}_given = {}", key, finite_number(belief->second.value)));
   }
   return fields;
 }
@@ -83,7 +82,7 @@ void append_curve(const sim::EffectEntry& entry, const sim::EffectInfo& info, si
   const sim::Curve curve(entry);
   const auto list = [](const std::vector<double>& values) {
     std::vector<std::string> texts;
-    for (const double value : values) texts.push_back(number(value));
+    for (const double value : values) texts.push_back(finite_number(value));
     return fmt::format("[{}]", fmt::join(texts, ", "));
   };
   std::vector<double> deviations;

@@ -22,13 +22,13 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
                      quoted(channel)));
     return std::nullopt;
   }
-  if (channel.name.quantity == Quantity::voltage) {
+  if (channel.name.quantity == ChannelQuantity::voltage) {
     const bool is_V = unit && unit->dimension == Dimension::voltage;
     return Decision{"u_V", is_V ? unit->factor : 1.0, 0.0, is_V && wanted ? 0.92 : 0.7,
                     is_V ? fmt::format("voltage in {}, taken as the command to the amplifier", channel.name.unit_text)
                          : "taken as the command to the amplifier, in V"};
   }
-  if (channel.name.quantity == Quantity::current || (unit && unit->dimension == Dimension::current)) {
+  if (channel.name.quantity == ChannelQuantity::current || (unit && unit->dimension == Dimension::current)) {
     if (unit && unit->dimension == Dimension::current)
       return Decision{"i_A", unit->factor, 0.0, kSureByUnit - less,
                       fmt::format("current in {}{}", channel.name.unit_text, said)};
@@ -46,7 +46,8 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
                       channel.name.unit_text),
           0.5);
     lack(fmt::format("the size in {} of one '{}' of {}; give --map i_A=…",
-                     channel.name.quantity == Quantity::force ? "N" : "Nm", channel.name.unit_text, quoted(channel)));
+                     channel.name.quantity == ChannelQuantity::force ? "N" : "Nm", channel.name.unit_text,
+                     quoted(channel)));
     return std::nullopt;
   }
   const bool has_constant = constant > 0.0 && constant != 1.0;
@@ -54,17 +55,17 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
       "i_A", (has_unit ? unit->factor : 1.0) / (has_constant ? constant : 1.0), 0.0, (has_unit ? 0.95 : 0.7) - less,
       fmt::format("{} {}{}; {}", quantity_name(channel.name.quantity),
                   has_unit ? "in " + channel.name.unit_text
-                           : (channel.name.quantity == Quantity::force ? "without a unit, taken as N"
-                                                                       : "without a unit, taken as Nm"),
+                           : (channel.name.quantity == ChannelQuantity::force ? "without a unit, taken as N"
+                                                                              : "without a unit, taken as Nm"),
                   said,
-                  has_constant
-                      ? fmt::format("{:.6g} a current of 1 A", constant)
-                      : (channel.name.quantity == Quantity::force ? "1 A stands for 1 N" : "1 A stands for 1 Nm"))};
+                  has_constant ? fmt::format("{:.6g} a current of 1 A", constant)
+                               : (channel.name.quantity == ChannelQuantity::force ? "1 A stands for 1 N"
+                                                                                  : "1 A stands for 1 Nm"))};
 }
 
 void AxisStudy::settle_effort() {
   for (const bool wanted : {false, true})
-    for (const Quantity quantity : {Quantity::current, Quantity::torque, Quantity::force}) {
+    for (const ChannelQuantity quantity : {ChannelQuantity::current, ChannelQuantity::torque, ChannelQuantity::force}) {
       const NamedChannel* channel = pick(quantity, wanted, false);
       if (channel == nullptr) continue;
       if (const auto decision = effort_decision(*channel)) {
@@ -74,7 +75,7 @@ void AxisStudy::settle_effort() {
       }
     }
   for (const bool wanted : {true, false})
-    if (const NamedChannel* channel = pick(Quantity::voltage, wanted, false))
+    if (const NamedChannel* channel = pick(ChannelQuantity::voltage, wanted, false))
       if (const auto decision = effort_decision(*channel)) {
         take(*channel, *decision);
         effort_ = channel;
@@ -96,10 +97,10 @@ void AxisStudy::find_constants() {
     logged.is_linear = true;
     for (double& speed : logged.speed) speed *= 1e-3;
   }
-  if (effort_ != nullptr && effort_->name.quantity == Quantity::current) logged.current = taken(effort_);
+  if (effort_ != nullptr && effort_->name.quantity == ChannelQuantity::current) logged.current = taken(effort_);
   for (const NamedChannel& channel : channels_) {
     const auto& unit = channel.name.unit;
-    if (settled_[channel.column] || channel.name.quantity != Quantity::voltage || rank(channel) < 0.0) continue;
+    if (settled_[channel.column] || channel.name.quantity != ChannelQuantity::voltage || rank(channel) < 0.0) continue;
     logged.voltages.push_back(values(channel));
     for (double& voltage : logged.voltages.back())
       voltage *= unit && unit->dimension == Dimension::voltage ? unit->factor : 1.0;

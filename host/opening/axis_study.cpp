@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/opening/channel_physics.hpp"
 #include "host/opening/encoder_scale.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -35,7 +35,7 @@ double AxisStudy::rank(const NamedChannel& channel) const {
   return merit;
 }
 
-const NamedChannel* AxisStudy::pick(Quantity quantity, bool reference, bool second) {
+const NamedChannel* AxisStudy::pick(ChannelQuantity quantity, bool reference, bool second) {
   const NamedChannel* best = nullptr;
   std::vector<const NamedChannel*> equal;
   for (const NamedChannel& channel : channels_) {
@@ -47,7 +47,8 @@ const NamedChannel* AxisStudy::pick(Quantity quantity, bool reference, bool seco
     if (rank(channel) == rank(*best)) equal.push_back(&channel);
   }
   if (equal.size() < 2) return best;
-  const bool is_effort = quantity == Quantity::current || quantity == Quantity::torque || quantity == Quantity::force;
+  const bool is_effort =
+      quantity == ChannelQuantity::current || quantity == ChannelQuantity::torque || quantity == ChannelQuantity::force;
   if (is_effort && position_ != nullptr) {
     std::ranges::sort(equal, std::ranges::greater(), [&](const NamedChannel* channel) {
       return effort_by_motion(values(*position_), values(*channel)).value_or(0.0);
@@ -155,7 +156,7 @@ std::optional<AxisStudy::Decision> AxisStudy::position_by_unit(const NamedChanne
 
 std::optional<AxisStudy::Decision> AxisStudy::scale_by_reference(const NamedChannel& channel) const {
   for (const NamedChannel& reference : channels_) {
-    const auto known = reference.name.quantity == Quantity::position && reference.name.is_reference
+    const auto known = reference.name.quantity == ChannelQuantity::position && reference.name.is_reference
                            ? position_by_unit(reference)
                            : std::nullopt;
     if (!known) continue;
@@ -200,9 +201,9 @@ std::optional<AxisStudy::Decision> AxisStudy::unit_by_speed(const NamedChannel& 
 }
 
 void AxisStudy::settle_position() {
-  position_ = pick(Quantity::position, false, false);
+  position_ = pick(ChannelQuantity::position, false, false);
   if (position_ == nullptr) {
-    position_ = pick(Quantity::position, false, true);
+    position_ = pick(ChannelQuantity::position, false, true);
     if (position_ == nullptr) return;
   }
   std::optional<Decision> decision = position_by_unit(*position_);
@@ -240,7 +241,7 @@ void AxisStudy::settle_table_position() {
   if (!position_taken_) return;
   const NamedChannel* table = nullptr;
   for (const NamedChannel& channel : channels_)
-    if (!settled_[channel.column] && channel.name.quantity == Quantity::position && channel.name.is_second &&
+    if (!settled_[channel.column] && channel.name.quantity == ChannelQuantity::position && channel.name.is_second &&
         !channel.name.is_reference && rank(channel) >= 0.0 && (table == nullptr || rank(channel) > rank(*table)))
       table = &channel;
   if (table == nullptr) return;
@@ -332,7 +333,7 @@ void AxisStudy::settle_speed() {
 }
 
 void AxisStudy::settle_references() {
-  const NamedChannel* reference = pick(Quantity::position, true, false);
+  const NamedChannel* reference = pick(ChannelQuantity::position, true, false);
   if (reference != nullptr) {
     std::optional<Decision> decision = position_by_unit(*reference);
     if (!decision && position_taken_) {
@@ -348,7 +349,7 @@ void AxisStudy::settle_references() {
       leave(*reference, "position reference in an unknown unit", 0.5);
     }
   }
-  const NamedChannel* wanted = pick(Quantity::speed, true, false);
+  const NamedChannel* wanted = pick(ChannelQuantity::speed, true, false);
   if (wanted == nullptr) return;
   const OpenedChannel* speed = speed_ != nullptr ? &found_->channels[speed_->column] : nullptr;
   if (wanted->name.unit && (is_angular(wanted->name) || wanted->name.unit->dimension == Dimension::linear_speed)) {
@@ -364,7 +365,7 @@ void AxisStudy::settle_references() {
 }
 
 void AxisStudy::settle_temperature() {
-  if (const NamedChannel* channel = pick(Quantity::temperature, false, false)) {
+  if (const NamedChannel* channel = pick(ChannelQuantity::temperature, false, false)) {
     const auto& unit = channel->name.unit;
     if (unit && unit->dimension == Dimension::temperature)
       take(*channel, {"temp_C", unit->factor, unit->offset, kSureByUnit,
@@ -380,7 +381,7 @@ void AxisStudy::leave_rest() {
       leave(channel, column.fault, 0.9);
     else if (is_constant(column.values))
       leave(channel, "never changes", 0.9);
-    else if (channel.name.quantity == Quantity::unknown)
+    else if (channel.name.quantity == ChannelQuantity::unknown)
       leave(channel, "not recognised; left out", 0.0);
     else
       leave(channel,
@@ -396,7 +397,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   axis_ = &axis;
   found_ = &found;
   settle_joint();
-  speed_ = pick(Quantity::speed, false, false);
+  speed_ = pick(ChannelQuantity::speed, false, false);
   settle_position();
   settle_table_position();
   settle_speed();

@@ -35,7 +35,7 @@ class AxisStudy {
     std::string why;
   };
 
-  const NamedChannel* pick(Quantity quantity, bool reference, bool second);
+  const NamedChannel* pick(ChannelQuantity quantity, bool reference, bool second);
   double rank(const NamedChannel& channel) const;
   const std::vector<double>& values(const NamedChannel& channel) const { return log_.columns[channel.column].values; }
   std::string quoted(const NamedChannel& channel) const;

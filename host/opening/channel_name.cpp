@@ -156,37 +156,37 @@ constexpr unsigned kQuantities =
 
 /// The main quantity of a name with several meanings: "momentenbildender Strom" is a current; "position error" is not
 /// used.
-Quantity one_of(unsigned senses) {
-  if ((senses & kOther) != 0) return Quantity::other;
-  if ((senses & kTime) != 0) return Quantity::time;
-  if ((senses & kTemperature) != 0) return Quantity::temperature;
-  if ((senses & kCurrent) != 0) return Quantity::current;
-  if ((senses & kTorque) != 0) return Quantity::torque;
-  if ((senses & kForce) != 0) return Quantity::force;
-  if ((senses & kVoltage) != 0) return Quantity::voltage;
-  if ((senses & kSpeed) != 0) return Quantity::speed;
-  return (senses & kPosition) != 0 ? Quantity::position : Quantity::unknown;
+ChannelQuantity one_of(unsigned senses) {
+  if ((senses & kOther) != 0) return ChannelQuantity::other;
+  if ((senses & kTime) != 0) return ChannelQuantity::time;
+  if ((senses & kTemperature) != 0) return ChannelQuantity::temperature;
+  if ((senses & kCurrent) != 0) return ChannelQuantity::current;
+  if ((senses & kTorque) != 0) return ChannelQuantity::torque;
+  if ((senses & kForce) != 0) return ChannelQuantity::force;
+  if ((senses & kVoltage) != 0) return ChannelQuantity::voltage;
+  if ((senses & kSpeed) != 0) return ChannelQuantity::speed;
+  return (senses & kPosition) != 0 ? ChannelQuantity::position : ChannelQuantity::unknown;
 }
 
-bool suits(Quantity quantity, Dimension dimension) {
+bool suits(ChannelQuantity quantity, Dimension dimension) {
   switch (quantity) {
-    case Quantity::time:
+    case ChannelQuantity::time:
       return dimension == Dimension::time;
-    case Quantity::position:
+    case ChannelQuantity::position:
       return dimension == Dimension::angle || dimension == Dimension::length || dimension == Dimension::counts;
-    case Quantity::speed:
+    case ChannelQuantity::speed:
       return dimension == Dimension::angular_speed || dimension == Dimension::linear_speed ||
              dimension == Dimension::count_speed || dimension == Dimension::share;
-    case Quantity::current:
+    case ChannelQuantity::current:
       return dimension == Dimension::current || dimension == Dimension::share;
-    case Quantity::torque:
+    case ChannelQuantity::torque:
       return dimension == Dimension::torque || dimension == Dimension::force || dimension == Dimension::share ||
              dimension == Dimension::current;
-    case Quantity::force:
+    case ChannelQuantity::force:
       return dimension == Dimension::force;
-    case Quantity::voltage:
+    case ChannelQuantity::voltage:
       return dimension == Dimension::voltage || dimension == Dimension::share;
-    case Quantity::temperature:
+    case ChannelQuantity::temperature:
       return dimension == Dimension::temperature;
     default:
       return false;
@@ -194,30 +194,30 @@ bool suits(Quantity quantity, Dimension dimension) {
 }
 
 /// The quantity that a unit implies if the name gives none.
-Quantity quantity_of(Dimension dimension) {
+ChannelQuantity quantity_of(Dimension dimension) {
   switch (dimension) {
     case Dimension::time:
-      return Quantity::time;
+      return ChannelQuantity::time;
     case Dimension::angle:
     case Dimension::length:
     case Dimension::counts:
-      return Quantity::position;
+      return ChannelQuantity::position;
     case Dimension::angular_speed:
     case Dimension::linear_speed:
     case Dimension::count_speed:
-      return Quantity::speed;
+      return ChannelQuantity::speed;
     case Dimension::current:
-      return Quantity::current;
+      return ChannelQuantity::current;
     case Dimension::torque:
-      return Quantity::torque;
+      return ChannelQuantity::torque;
     case Dimension::force:
-      return Quantity::force;
+      return ChannelQuantity::force;
     case Dimension::temperature:
-      return Quantity::temperature;
+      return ChannelQuantity::temperature;
     case Dimension::acceleration:
-      return Quantity::other;
+      return ChannelQuantity::other;
     default:
-      return Quantity::unknown;
+      return ChannelQuantity::unknown;
   }
 }
 
@@ -328,15 +328,15 @@ ChannelName understand_name(const LogColumn& column) {
   result.quantity = one_of(words.senses);
   result.is_weak = (words.senses & kWeak) != 0;
   if (result.unit) {
-    const Quantity by_unit = quantity_of(result.unit->dimension);
-    const bool says_nothing = result.quantity == Quantity::unknown;
+    const ChannelQuantity by_unit = quantity_of(result.unit->dimension);
+    const bool says_nothing = result.quantity == ChannelQuantity::unknown;
     if (says_nothing ||
-        (result.is_weak && by_unit != Quantity::unknown && !suits(result.quantity, result.unit->dimension)))
+        (result.is_weak && by_unit != ChannelQuantity::unknown && !suits(result.quantity, result.unit->dimension)))
       result.quantity = by_unit;
   }
-  if ((words.senses & kNotTheMotor) != 0 && result.quantity != Quantity::time &&
-      result.quantity != Quantity::temperature && result.quantity != Quantity::position)
-    result.quantity = Quantity::other;
+  if ((words.senses & kNotTheMotor) != 0 && result.quantity != ChannelQuantity::time &&
+      result.quantity != ChannelQuantity::temperature && result.quantity != ChannelQuantity::position)
+    result.quantity = ChannelQuantity::other;
   result.is_reference = (words.senses & kReference) != 0;
   result.is_measured = (words.senses & kMeasured) != 0;
   result.is_second = (words.senses & kSecond) != 0;
@@ -346,7 +346,7 @@ ChannelName understand_name(const LogColumn& column) {
   return result;
 }
 
-std::string_view quantity_name(Quantity quantity) {
+std::string_view quantity_name(ChannelQuantity quantity) {
   static constexpr std::array<std::string_view, 10> kNames{"unknown", "time",  "position", "speed",       "current",
                                                            "torque",  "force", "voltage",  "temperature", "other"};
   return kNames[static_cast<std::size_t>(quantity)];

@@ -11,7 +11,7 @@
 
 namespace host {
 
-enum class Quantity {
+enum class ChannelQuantity {
   unknown,
   time,
   position,
@@ -25,7 +25,7 @@ enum class Quantity {
 };
 
 struct ChannelName {
-  Quantity quantity = Quantity::unknown;
+  ChannelQuantity quantity = ChannelQuantity::unknown;
   bool is_reference = false;        ///< reference: set point, command, target
   bool is_measured = false;         ///< named as measured: actual, feedback
   bool is_second = false;           ///< on the load side: a scale on the table
@@ -43,6 +43,6 @@ struct ChannelName {
 ChannelName understand_name(const LogColumn& column);
 
 /// "position", "speed", …
-std::string_view quantity_name(Quantity quantity);
+std::string_view quantity_name(ChannelQuantity quantity);
 
 }  // namespace host

@@ -12,7 +12,7 @@ namespace host {
 namespace {
 
 /// Largest number of equations: enough for four digits of a factor, independent of the length of the log.
-constexpr std::size_t kMostRows = 20'000;
+constexpr std::size_t kMostRowsRead = 20'000;
 
 struct Fit {
   Eigen::VectorXd coefficients, deviations;
@@ -58,8 +58,8 @@ std::vector<double> running_mean(const std::vector<double>& values, std::size_t 
   return means;
 }
 
-/// Uses every n-th row, so that at most kMostRows remain.
-std::size_t stride_of(std::size_t rows) { return std::max<std::size_t>(1, rows / kMostRows); }
+/// Uses every n-th row, so that at most kMostRowsRead remain.
+std::size_t stride_of(std::size_t rows) { return std::max<std::size_t>(1, rows / kMostRowsRead); }
 
 }  // namespace
 
@@ -187,12 +187,6 @@ std::vector<double> without_sign_bit(std::vector<double> values, int bit) {
   for (double& value : values)
     if (value >= weight) value = weight - value;
   return values;
-}
-
-bool is_constant(const std::vector<double>& values) {
-  const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
-  return first == values.end() ||
-         std::ranges::all_of(values, [&](double value) { return !std::isfinite(value) || value == *first; });
 }
 
 }  // namespace host

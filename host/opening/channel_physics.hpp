@@ -40,7 +40,4 @@ std::optional<int> sign_bit(const std::vector<double>& values);
 /// The values with `bit` as sign bit.
 std::vector<double> without_sign_bit(std::vector<double> values, int bit);
 
-/// Whether all finite values are the same.
-bool is_constant(const std::vector<double>& values);
-
 }  // namespace host

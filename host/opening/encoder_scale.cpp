@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Counts per turn: lines times four, powers of two, and round decimal numbers.
 constexpr double kCounts[] = {400,     800,     1000,    1024,    2000,    2048,    2400,   3600,   4000,
@@ -32,11 +32,11 @@ struct NamedScale {
 };
 
 constexpr NamedScale kAngularSpeeds[] = {
-    {1.0, "rad/s"}, {kPi / 30.0, "1/min"}, {2.0 * kPi, "turns/s"}, {kPi / 180.0, "deg/s"}, {1e-3, "mrad/s"}};
+    {1.0, "rad/s"}, {pi / 30.0, "1/min"}, {2.0 * pi, "turns/s"}, {pi / 180.0, "deg/s"}, {1e-3, "mrad/s"}};
 constexpr NamedScale kLinearSpeeds[] = {{1.0, "mm/s"},         {1e3, "m/s"},     {1.0 / 60.0, "mm/min"},
                                         {1e3 / 60.0, "m/min"}, {25.4, "inch/s"}, {25.4 / 60.0, "inch/min"},
                                         {1e-3, "um/s"}};
-constexpr NamedScale kAngles[] = {{1.0, "rad"}, {2.0 * kPi, "turns"}, {kPi / 180.0, "deg"}, {1e-3, "mrad"}};
+constexpr NamedScale kAngles[] = {{1.0, "rad"}, {2.0 * pi, "turns"}, {pi / 180.0, "deg"}, {1e-3, "mrad"}};
 constexpr NamedScale kLengths[] = {{1.0, "mm"}, {1e3, "m"}, {25.4, "inch"}, {1e-3, "um"}};
 
 /// Units differ by much more than this. It allows for errors of a speed filter or a poor fit.
@@ -78,10 +78,10 @@ std::optional<NeatScale> neat_counts_per_rad(double measured, double tolerance) 
   std::optional<NeatScale> best;
   double least = tolerance;
   for (const double counts : kCounts) {
-    const double off = std::abs(std::abs(measured) * 2.0 * kPi / counts - 1.0);
+    const double off = std::abs(std::abs(measured) * 2.0 * pi / counts - 1.0);
     if (off > least) continue;
     least = off;
-    best = NeatScale{std::copysign(counts / (2.0 * kPi), measured), fmt::format("{:g} counts a turn", counts)};
+    best = NeatScale{std::copysign(counts / (2.0 * pi), measured), fmt::format("{:g} counts a turn", counts)};
   }
   return best;
 }

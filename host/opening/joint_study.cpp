@@ -13,7 +13,7 @@ void AxisStudy::settle_joint() {
     ChannelName& name = channel.name;
     if (!name.sliding_unit) continue;
     if (slides) name.unit = name.sliding_unit;
-    if (slides && name.quantity == Quantity::torque) name.quantity = Quantity::force;
+    if (slides && name.quantity == ChannelQuantity::torque) name.quantity = ChannelQuantity::force;
     may_slide_ = !hints_.sheet;
     const std::size_t choice = name.unit_text.find(" or ");
     name.unit_text =

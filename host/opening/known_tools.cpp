@@ -14,60 +14,67 @@ namespace {
 
 struct ToolColumn {
   std::string_view ending;  ///< end of the column's name
-  Quantity quantity;
+  ChannelQuantity quantity;
   bool is_reference;
   std::string_view unit;  ///< empty if there is none
 };
 
 /// ODrive firmware 0.5.1 and later: turns, turns/s, A (docs.odriverobotics.com, interface reference).
 constexpr ToolColumn kOdrive[] = {
-    {"pos_estimate", Quantity::position, false, "turns"}, {"pos_rel", Quantity::position, false, "turns"},
-    {"pos_abs", Quantity::position, false, "turns"},      {"vel_estimate", Quantity::speed, false, "turns/s"},
-    {".vel", Quantity::speed, false, "turns/s"},          {"Iq_measured", Quantity::current, false, "A"},
-    {"Iq_setpoint", Quantity::current, true, "A"},        {"input_pos", Quantity::position, true, "turns"},
-    {"pos_setpoint", Quantity::position, true, "turns"},  {"input_vel", Quantity::speed, true, "turns/s"},
-    {"vel_setpoint", Quantity::speed, true, "turns/s"},   {"torque_setpoint", Quantity::torque, true, "Nm"},
-    {"torque_estimate", Quantity::torque, false, "Nm"},   {"effective_torque_setpoint", Quantity::torque, true, "Nm"},
+    {"pos_estimate", ChannelQuantity::position, false, "turns"},
+    {"pos_rel", ChannelQuantity::position, false, "turns"},
+    {"pos_abs", ChannelQuantity::position, false, "turns"},
+    {"vel_estimate", ChannelQuantity::speed, false, "turns/s"},
+    {".vel", ChannelQuantity::speed, false, "turns/s"},
+    {"Iq_measured", ChannelQuantity::current, false, "A"},
+    {"Iq_setpoint", ChannelQuantity::current, true, "A"},
+    {"input_pos", ChannelQuantity::position, true, "turns"},
+    {"pos_setpoint", ChannelQuantity::position, true, "turns"},
+    {"input_vel", ChannelQuantity::speed, true, "turns/s"},
+    {"vel_setpoint", ChannelQuantity::speed, true, "turns/s"},
+    {"torque_setpoint", ChannelQuantity::torque, true, "Nm"},
+    {"torque_estimate", ChannelQuantity::torque, false, "Nm"},
+    {"effective_torque_setpoint", ChannelQuantity::torque, true, "Nm"},
 };
 
 /// moteus registers: revolutions, revolutions/s, Nm, A (github.com/mjbots/moteus, docs/reference.md).
 constexpr ToolColumn kMoteus[] = {
-    {"position", Quantity::position, false, "turns"},
-    {"velocity", Quantity::speed, false, "turns/s"},
-    {"torque", Quantity::torque, false, "Nm"},
-    {"q_current", Quantity::current, false, "A"},
-    {"q_A", Quantity::current, false, "A"},
-    {"d_current", Quantity::other, false, "A"},
-    {"d_A", Quantity::other, false, "A"},
-    {"control_position", Quantity::position, true, "turns"},
-    {"control_velocity", Quantity::speed, true, "turns/s"},
-    {"temperature", Quantity::temperature, false, "degC"},
-    {"voltage", Quantity::other, false, "V"},
-    {"motor_temperature", Quantity::temperature, false, "degC"},
+    {"position", ChannelQuantity::position, false, "turns"},
+    {"velocity", ChannelQuantity::speed, false, "turns/s"},
+    {"torque", ChannelQuantity::torque, false, "Nm"},
+    {"q_current", ChannelQuantity::current, false, "A"},
+    {"q_A", ChannelQuantity::current, false, "A"},
+    {"d_current", ChannelQuantity::other, false, "A"},
+    {"d_A", ChannelQuantity::other, false, "A"},
+    {"control_position", ChannelQuantity::position, true, "turns"},
+    {"control_velocity", ChannelQuantity::speed, true, "turns/s"},
+    {"temperature", ChannelQuantity::temperature, false, "degC"},
+    {"voltage", ChannelQuantity::other, false, "V"},
+    {"motor_temperature", ChannelQuantity::temperature, false, "degC"},
 };
 
 /// VESC Tool: ms since midnight, A, degrees (github.com/vedderb/vesc_tool, vescinterface.cpp).
 constexpr ToolColumn kVesc[] = {
-    {"ms_today", Quantity::time, false, "ms"},
-    {"q_axis_current", Quantity::current, false, "A"},
-    {"current_motor", Quantity::other, false, "A"},
-    {"current_in", Quantity::other, false, "A"},
-    {"d_axis_current", Quantity::other, false, "A"},
-    {"encoder_position", Quantity::position, false, "deg"},
-    {"erpm", Quantity::other, false, ""},
-    {"tachometer", Quantity::other, false, ""},
-    {"tachometer_abs", Quantity::other, false, ""},
-    {"temp_motor", Quantity::temperature, false, "degC"},
-    {"speed_meters_per_sec", Quantity::other, false, ""},
-    {"q_axis_voltage", Quantity::other, false, "V"},
-    {"d_axis_voltage", Quantity::other, false, "V"},
-    {"ms_today_setup", Quantity::other, false, ""},
-    {"ms_today_imu", Quantity::other, false, ""},
-    {"tacho_meters", Quantity::other, false, ""},
-    {"temp_mos_max", Quantity::other, false, ""},
-    {"current_in_setup", Quantity::other, false, ""},
-    {"current_motor_setup", Quantity::other, false, ""},
-    {"gnss_posTime", Quantity::other, false, ""},
+    {"ms_today", ChannelQuantity::time, false, "ms"},
+    {"q_axis_current", ChannelQuantity::current, false, "A"},
+    {"current_motor", ChannelQuantity::other, false, "A"},
+    {"current_in", ChannelQuantity::other, false, "A"},
+    {"d_axis_current", ChannelQuantity::other, false, "A"},
+    {"encoder_position", ChannelQuantity::position, false, "deg"},
+    {"erpm", ChannelQuantity::other, false, ""},
+    {"tachometer", ChannelQuantity::other, false, ""},
+    {"tachometer_abs", ChannelQuantity::other, false, ""},
+    {"temp_motor", ChannelQuantity::temperature, false, "degC"},
+    {"speed_meters_per_sec", ChannelQuantity::other, false, ""},
+    {"q_axis_voltage", ChannelQuantity::other, false, "V"},
+    {"d_axis_voltage", ChannelQuantity::other, false, "V"},
+    {"ms_today_setup", ChannelQuantity::other, false, ""},
+    {"ms_today_imu", ChannelQuantity::other, false, ""},
+    {"tacho_meters", ChannelQuantity::other, false, ""},
+    {"temp_mos_max", ChannelQuantity::other, false, ""},
+    {"current_in_setup", ChannelQuantity::other, false, ""},
+    {"current_motor_setup", ChannelQuantity::other, false, ""},
+    {"gnss_posTime", ChannelQuantity::other, false, ""},
 };
 
 /// Betaflight's Blackbox: the terms of the PID and the battery are not the current or torque of an axis
@@ -79,7 +86,7 @@ void apply_betaflight(const Log& log, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k) {
     const std::string& name = log.columns[k].name;
     if (std::ranges::any_of(kOthers, [&](std::string_view start) { return name.starts_with(start); }))
-      names[k].quantity = Quantity::other;
+      names[k].quantity = ChannelQuantity::other;
     if (name != "time") continue;
     names[k].unit_text = "us";
     names[k].unit = unit_named("us");
@@ -141,13 +148,13 @@ void apply_hal(const Log& log, std::vector<ChannelName>& names) {
     ChannelName& name = names[k];
     if (name.axis.empty()) name.axis = axis_of_signal(log.columns[k].name);
     if (says(".output")) {
-      name.quantity = Quantity::voltage;
+      name.quantity = ChannelQuantity::voltage;
       name.is_reference = name.is_weak = true;
     } else if (says(".command") || says("-cmd")) {
-      name.quantity = says("vel") ? Quantity::speed : Quantity::position;
+      name.quantity = says("vel") ? ChannelQuantity::speed : ChannelQuantity::position;
       name.is_reference = true;
     } else if (says(".feedback") || says("-fb")) {
-      name.quantity = says("vel") ? Quantity::speed : Quantity::position;
+      name.quantity = says("vel") ? ChannelQuantity::speed : ChannelQuantity::position;
       name.is_measured = true;
       name.is_reference = false;
     }
@@ -158,13 +165,13 @@ void apply_hal(const Log& log, std::vector<ChannelName>& names) {
 void apply_joint_states(const Log& log, std::vector<ChannelName>& names) {
   struct JointColumn {
     std::string_view unit;
-    Quantity quantity;
+    ChannelQuantity quantity;
     UnitMeaning turning, sliding;
   };
   static constexpr JointColumn kColumns[] = {
-      {kJointPositionUnit, Quantity::position, {Dimension::angle}, {Dimension::length, 1e3}},
-      {kJointSpeedUnit, Quantity::speed, {Dimension::angular_speed}, {Dimension::linear_speed, 1e3}},
-      {kJointEffortUnit, Quantity::torque, {Dimension::torque}, {Dimension::force}}};
+      {kJointPositionUnit, ChannelQuantity::position, {Dimension::angle}, {Dimension::length, 1e3}},
+      {kJointSpeedUnit, ChannelQuantity::speed, {Dimension::angular_speed}, {Dimension::linear_speed, 1e3}},
+      {kJointEffortUnit, ChannelQuantity::torque, {Dimension::torque}, {Dimension::force}}};
   for (std::size_t k = 0; k < log.columns.size(); ++k)
     for (const JointColumn& column : kColumns) {
       if (log.columns[k].unit != column.unit) continue;
@@ -181,7 +188,7 @@ void apply_joint_states(const Log& log, std::vector<ChannelName>& names) {
 
 void apply_known_tools(Log& log, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k)  // captures of dSPACE: X is the time
-    if (log.columns[k].name.ends_with(".X.Data")) names[k].quantity = Quantity::time;
+    if (log.columns[k].name.ends_with(".X.Data")) names[k].quantity = ChannelQuantity::time;
   const bool odrive = has(log, "pos_estimate") || has(log, "vel_estimate") || has(log, "Iq_measured");
   if (odrive && !are_counts(log)) apply(log, kOdrive, names);
   const bool moteus =

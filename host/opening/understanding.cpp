@@ -11,6 +11,7 @@
 #include "host/opening/channel_physics.hpp"
 #include "host/opening/known_tools.hpp"
 #include "host/record/columns.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -98,15 +99,15 @@ class Understander {
         continue;
       const std::ptrdiff_t channels =
           raw_.columns[k].name.empty() ? 0 : std::ranges::count(log_.columns, raw_.columns[k].name, &LogColumn::time);
-      if (channels == 0 && (names_[k].quantity != Quantity::time || !raw_.columns[k].time.empty())) continue;
-      names_[k].quantity = Quantity::time;
+      if (channels == 0 && (names_[k].quantity != ChannelQuantity::time || !raw_.columns[k].time.empty())) continue;
+      names_[k].quantity = ChannelQuantity::time;
       found_.channels[k].why = "time stamps";
       found_.channels[k].sure = kSureEnough;
       if (channels > most) stamps = &raw_.columns[at = k];
       most = std::max(most, channels);
     }
     for (std::size_t k = 0; k < log_.columns.size() && stamps == nullptr; ++k)
-      if (raw_.columns[k].time.empty() && names_[k].quantity == Quantity::unknown && rises(log_.columns[k]) &&
+      if (raw_.columns[k].time.empty() && names_[k].quantity == ChannelQuantity::unknown && rises(log_.columns[k]) &&
           !is_counter(k))
         stamps = &raw_.columns[at = k];
     const ChannelName* name = stamps == nullptr ? nullptr : &names_[at];
@@ -127,7 +128,7 @@ class Understander {
     channel.factor = found_.time.source == kRowSource && !name->unit ? 1.0 : factor;
     channel.why = found_.time.why;
     channel.sure = found_.time.sure;
-    names_[at].quantity = Quantity::time;
+    names_[at].quantity = ChannelQuantity::time;
     if (channel.sure < kSureEnough && !channel.taken_as.empty())
       found_.asks.push_back(
           fmt::format("times in {}: {}? If not, give --period SECONDS", source_text(stamps_), channel.why));
@@ -149,12 +150,12 @@ class Understander {
   void split_axes() {
     std::set<std::string> tags;
     for (std::size_t k = 0; k < names_.size(); ++k)
-      if (names_[k].quantity == Quantity::position || names_[k].quantity == Quantity::speed ||
-          names_[k].quantity == Quantity::current || names_[k].quantity == Quantity::torque)
+      if (names_[k].quantity == ChannelQuantity::position || names_[k].quantity == ChannelQuantity::speed ||
+          names_[k].quantity == ChannelQuantity::current || names_[k].quantity == ChannelQuantity::torque)
         if (!names_[k].is_reference && !names_[k].axis.empty()) tags.insert(names_[k].axis);
     const bool several = tags.size() > 1;
     for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (names_[k].quantity == Quantity::time) continue;
+      if (names_[k].quantity == ChannelQuantity::time) continue;
       const bool belongs = several && tags.contains(names_[k].axis);
       axes_[belongs ? names_[k].axis : ""].push_back({k, names_[k]});
     }
@@ -165,11 +166,12 @@ class Understander {
     for (const NamedChannel& channel : rest->second) {
       OpenedChannel& out = found_.channels[channel.column];
       out.why =
-          channel.name.quantity == Quantity::unknown
+          channel.name.quantity == ChannelQuantity::unknown
               ? "not recognised; left out"
               : fmt::format("{}, but its name does not assign it to an axis", quantity_name(channel.name.quantity));
-      const bool effort = channel.name.quantity == Quantity::current || channel.name.quantity == Quantity::torque ||
-                          channel.name.quantity == Quantity::voltage || channel.name.quantity == Quantity::force;
+      const bool effort =
+          channel.name.quantity == ChannelQuantity::current || channel.name.quantity == ChannelQuantity::torque ||
+          channel.name.quantity == ChannelQuantity::voltage || channel.name.quantity == ChannelQuantity::force;
       if (effort && !is_constant(log_.columns[channel.column].values))
         found_.asks.push_back(fmt::format(
             "the axis of '{}' ({}), which its name does not contain: give --map with the columns of one axis", out.name,
@@ -210,7 +212,7 @@ class Understander {
     constexpr std::size_t kMost = 16;
     std::vector<std::size_t> unknown;
     for (std::size_t k = 0; k < names_.size() && unknown.size() < kMost; ++k)
-      if (names_[k].quantity == Quantity::unknown && log_.columns[k].fault.empty() &&
+      if (names_[k].quantity == ChannelQuantity::unknown && log_.columns[k].fault.empty() &&
           !is_constant(log_.columns[k].values))
         unknown.push_back(k);
     if (!(found_.time.period_s > 0.0)) return;

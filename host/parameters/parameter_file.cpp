@@ -19,7 +19,7 @@ namespace host {
 
 namespace {
 
-constexpr std::string_view kFormat = "axis-params/1";
+constexpr std::string_view kParameterFormat = "axis-params/1";
 
 bool is_board_axis(std::string_view name) {
   return std::ranges::find(firmware::kAxisNames, name) != firmware::kAxisNames.end();
@@ -41,9 +41,9 @@ class ParameterReader {
   std::vector<Assignment> read(std::string_view text) {
     const toml::table root = parse_toml(text, name_);
     const auto format = root["format"].value<std::string_view>();
-    if (format != kFormat)
+    if (format != kParameterFormat)
       fail(1, "format = \"{}\" is missing: this is not a file of board parameters; `axistool design` writes one",
-           kFormat);
+           kParameterFormat);
     for (const auto& [key, node] : root) {
       if (key.str() == "format" || is_seal(key.str())) continue;
       const std::size_t line = std::max<std::size_t>(1, key.source().begin.line);

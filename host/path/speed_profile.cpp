@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-constexpr double kNear = 1.0 + 1e-9;
+constexpr double kRounding = 1.0 + 1e-9;
 constexpr int kDeepest = 200;  ///< of the recursion: more than the levels of speed of any path
 
 double ramp_time(double change, const TangentialLimits& l) {
@@ -42,7 +42,7 @@ struct Hump {
 
   double up() const { return ramp_length(from, top, rising); }
   double down() const { return ramp_length(top, to, falling); }
-  bool fits() const { return up() + down() <= length * kNear; }
+  bool fits() const { return up() + down() <= length * kRounding; }
   double cruise() const { return std::max(length - up() - down(), 0.0); }
   double time() const {
     const double level = cruise();

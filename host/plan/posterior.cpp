@@ -13,7 +13,7 @@ namespace host {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+[[noreturn]] void refuse_belief(const std::string& path, const std::string& what) {
   throw Failure(ExitCode::bad_input,
                 fmt::format("{}: {}; give the --json file of `axistool plan` or of an ambiguous `axistool diagnose`",
                             path, what));
@@ -34,7 +34,7 @@ void take_diagnosis(const nlohmann::json& document, Beliefs& beliefs) {
 
 Beliefs read_beliefs(const std::string& path) {
   const auto document = nlohmann::json::parse(read_file(path), nullptr, false);
-  if (document.is_discarded() || !document.is_object()) refuse(path, "not a JSON document");
+  if (document.is_discarded() || !document.is_object()) refuse_belief(path, "not a JSON document");
   Beliefs beliefs;
   try {
     const auto format = document.at("format").get<std::string>();
@@ -47,14 +47,14 @@ Beliefs read_beliefs(const std::string& path) {
                                   document.at("probabilities").at(k).get<double>()});
       beliefs.expected_odds = document.value("expected_odds", 0.0);
     } else {
-      refuse(path, fmt::format("'{}' contains no prior odds", format));
+      refuse_belief(path, fmt::format("'{}' contains no prior odds", format));
     }
   } catch (const nlohmann::json::exception& error) {
-    refuse(path, error.what());
+    refuse_belief(path, error.what());
   }
   double sum = 0.0;
   for (const Rival& rival : beliefs.rivals) sum += rival.probability;
-  if (beliefs.rivals.size() < 2 || !(sum > 0.0)) refuse(path, "it leaves only one explanation");
+  if (beliefs.rivals.size() < 2 || !(sum > 0.0)) refuse_belief(path, "it leaves only one explanation");
   for (Rival& rival : beliefs.rivals) rival.probability /= sum;
   return beliefs;
 }

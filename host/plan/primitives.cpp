@@ -19,7 +19,7 @@ class Pieces {
       holding_V_ = std::max(holding_V_, std::max(side.coulomb, side.breakaway) / drive.effort_per_volt);
     const bool rotary = data_.kind == sim::DriveKind::rotary;
     millimetre_ = rotary ? 1.0 : 1e-3;
-    turn_ = rotary ? 2.0 * std::numbers::pi * data_.lead : 0.0;
+    turn_ = data_.turn();
     rate_Hz_ = 1.0 / data_.sample_period_s;
   }
 

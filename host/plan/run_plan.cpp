@@ -26,12 +26,6 @@ std::string numbers_text(const ExcitationNumbers& numbers) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-std::string toml_number(double value) {
-  std::string text = fmt::format("{}", value);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
 }  // namespace
 
 double RunPlan::duration_s() const {

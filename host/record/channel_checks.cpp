@@ -48,10 +48,6 @@ std::string where(const Record& record, std::vector<double> Record::*channel, st
   return fmt::format("line {}, column {}", record.names_line + rows_below, name_of(record, channel));
 }
 
-bool is_constant(const std::vector<double>& values) {
-  return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
-}
-
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax_element(values);
   return *high - *low;
@@ -265,14 +261,14 @@ struct UnitMistake {
   std::string_view what;
 };
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr UnitMistake kRotaryMistakes[] = {
-    {30.0 / kPi, "the speed looks like rev/min; multiply it by 2 pi/60 = 0.10472"},
-    {0.5 / kPi, "the speed looks like rev/s; multiply it by 2 pi = 6.2832"},
-    {180.0 / kPi, "the speed looks like deg/s; multiply it by pi/180 = 0.017453"},
+    {30.0 / pi, "the speed looks like rev/min; multiply it by 2 pi/60 = 0.10472"},
+    {0.5 / pi, "the speed looks like rev/s; multiply it by 2 pi = 6.2832"},
+    {180.0 / pi, "the speed looks like deg/s; multiply it by pi/180 = 0.017453"},
     {1000.0, "the position looks like m under a name in mm (or the speed like mrad/s); multiply x by 1000"},
     {0.001, "the position looks like um under a name in mm; multiply x by 0.001"},
-    {2.0 * kPi, "the lead looks like mm/rev instead of mm/rad (or the speed is 2 pi too large); divide by 2 pi"},
+    {2.0 * pi, "the lead looks like mm/rev instead of mm/rad (or the speed is 2 pi too large); divide by 2 pi"},
 };
 constexpr UnitMistake kLinearMistakes[] = {
     {1000.0, "one of them is in mm and the other in m; scale the wrong one by 1000"},

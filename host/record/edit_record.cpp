@@ -21,7 +21,7 @@ namespace host {
 namespace {
 
 template <typename... Args>
-[[noreturn]] void fail(const Record& record, fmt::format_string<Args...> format, Args&&... args) {
+[[noreturn]] void fail_for(const Record& record, fmt::format_string<Args...> format, Args&&... args) {
   throw Failure(ExitCode::usage, fmt::format("{}: {}", record.path, fmt::format(format, std::forward<Args>(args)...)));
 }
 
@@ -34,8 +34,8 @@ void keep(std::vector<Value>& values, std::size_t begin, std::size_t end) {
 
 void keep_rows(Record& record, std::size_t begin, std::size_t end) {
   if (end < begin + kFewestRows)
-    fail(record, "{} rows would remain, but at least {} are needed; the record lasts from {} s to {} s",
-         end > begin ? end - begin : 0, kFewestRows, record.t_s.front(), record.t_s.back());
+    fail_for(record, "{} rows would remain, but at least {} are needed; the record lasts from {} s to {} s",
+             end > begin ? end - begin : 0, kFewestRows, record.t_s.front(), record.t_s.back());
   for (const auto channel : kChannelsInFileOrder) keep(record.*channel, begin, end);
   for (ExtraChannel& extra : record.extra) {
     keep(extra.values, begin, end);
@@ -63,11 +63,11 @@ std::vector<double>& channel_of(Record& record, std::string_view name) {
   for (ExtraChannel& extra : record.extra) {
     names.push_back(extra.name);
     if (name != extra.name) continue;
-    if (!extra.text.empty()) fail(record, "{} holds text, which cannot be interpolated between rows", name);
+    if (!extra.text.empty()) fail_for(record, "{} holds text, which cannot be interpolated between rows", name);
     return extra.values;
   }
-  if (name == "t_s") fail(record, "t_s itself cannot be shifted; name another channel");
-  fail(record, "there is no channel {}{}; there is {}", name, did_you_mean(name, names), fmt::join(names, ", "));
+  if (name == "t_s") fail_for(record, "t_s itself cannot be shifted; name another channel");
+  fail_for(record, "there is no channel {}{}; there is {}", name, did_you_mean(name, names), fmt::join(names, ", "));
 }
 
 /// The text of a record in two parts: the text above its rows, and the lines from the first to the last selected row.
@@ -133,7 +133,7 @@ Record shift_channel(const Record& record, std::string_view name, double by_s) {
   std::vector<double>& values = channel_of(shifted, name);
   const bool held = &values == &shifted.u_V;
   const double period_s = record.sample_period_s, rows = static_cast<double>(record.size());
-  if (!(std::abs(by_s) < period_s * rows)) fail(record, "{} s is longer than the record", by_s);
+  if (!(std::abs(by_s) < period_s * rows)) fail_for(record, "{} s is longer than the record", by_s);
   StampedChannel moved{record.t_s, values};
   for (double& t : moved.t_s) t += by_s;
   const double slack = 1e-6 * period_s;

@@ -19,7 +19,7 @@ namespace host {
 
 namespace {
 
-constexpr std::string_view kFormat = "axis-record/1";
+constexpr std::string_view kRecordFormat = "axis-record/1";
 
 /// Returns the lines of a text one by one, without line ends. Counts them for messages.
 class Lines {
@@ -91,7 +91,7 @@ class Parser {
       fail(
           "line 1: there is no '# format: {}' line, so the meaning of the columns is unknown; add it if the file has "
           "that format, else convert it: axistool import {} --map t_s=…,u_V=…,x_mm=… -o record.csv",
-          kFormat, name_);
+          kRecordFormat, name_);
   }
 
   void read_header_line() {
@@ -101,7 +101,8 @@ class Parser {
     const std::string value(trim_blanks(line_.substr(colon + 1)));
     if (!record_.header.emplace(key, value).second)
       fail_here("'# {}:' occurs twice in the header; keep one of them", key);
-    if (key == "format" && value != kFormat) fail_here("format '{}' is unknown; this program reads {}", value, kFormat);
+    if (key == "format" && value != kRecordFormat)
+      fail_here("format '{}' is unknown; this program reads {}", value, kRecordFormat);
     if (key == "drive") record_.drive = value;
     if (key == "sample_period_s") {
       const auto period = parse_number(value);

@@ -22,7 +22,7 @@ constexpr std::size_t kFinePoints = 600;
 constexpr int kPerResonance = 41;  ///< further points within five half widths on both sides
 constexpr std::size_t kNearest = 5;
 constexpr int kRepetitions = 200;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kMarginDegrees = 180.0 / std::numbers::pi;
 
 /// Local linear smoother: fits a straight line over log f to the nearest measured lines. Holds their weights.
 struct Smoother {
@@ -182,7 +182,8 @@ Values values_of(const std::vector<double>& f, const std::vector<Complex>& L) {
     const double before = std::log(std::abs(L[i - 1])), now = std::log(std::abs(L[i]));
     if ((before > 0.0) != (now > 0.0)) {
       const double part = before / (before - now);
-      const double margin = (std::numbers::pi - std::abs(std::arg(L[i - 1] + part * (L[i] - L[i - 1])))) * kDegrees;
+      const double margin =
+          (std::numbers::pi - std::abs(std::arg(L[i - 1] + part * (L[i] - L[i - 1])))) * kMarginDegrees;
       if (!(margin >= std::abs(found.phase_deg))) found.phase_deg = sign * margin;
       if (before > 0.0 && std::isnan(found.crossover_Hz))
         found.crossover_Hz = f[i - 1] * std::pow(f[i] / f[i - 1], part);

@@ -23,7 +23,7 @@ constexpr std::size_t kHops = 8;    ///< steps per period of the window that sea
 constexpr double kFullShare = 0.7;  ///< relative to the largest power: above it most of the window has full amplitude
 constexpr double kPartly = 0.6;     ///< part of such a window that may belong to the fade-in
 
-struct Stretch {
+struct SampleRange {
   std::size_t from = 0, to = 0;
   std::size_t length() const { return to > from ? to - from : 0; }
 };
@@ -43,8 +43,8 @@ std::vector<Number> numbers_in(const Record& record, const std::string& key) {
 
 /// The longest range of samples for which `fits(k)` holds.
 template <typename Fits>
-Stretch longest(std::size_t count, const Fits& fits) {
-  Stretch best, now;
+SampleRange longest(std::size_t count, const Fits& fits) {
+  SampleRange best, now;
   for (std::size_t k = 0; k < count; ++k) {
     if (!fits(k))
       now.from = k + 1;
@@ -55,16 +55,16 @@ Stretch longest(std::size_t count, const Fits& fits) {
 }
 
 /// The range in which `x` repeats after one period, within `tolerance`.
-Stretch periodic_stretch(const std::vector<double>& x, std::size_t period, double tolerance) {
+SampleRange periodic_stretch(const std::vector<double>& x, std::size_t period, double tolerance) {
   if (x.size() <= period) return {};
-  Stretch found =
+  SampleRange found =
       longest(x.size() - period, [&](std::size_t k) { return std::abs(x[k + period] - x[k]) <= tolerance; });
   if (found.length() > 0) found.to += period;
   return found;
 }
 
 /// The range in which the command contains the lines at full amplitude.
-Stretch loud_stretch(const Record& record, const MultisineHeader& excitation) {
+SampleRange loud_stretch(const Record& record, const MultisineHeader& excitation) {
   const std::size_t hop = std::max<std::size_t>(1, excitation.period / kHops);
   std::vector<double> power;
   for (std::size_t k = 0; k + excitation.period <= record.size(); k += hop) {
@@ -75,7 +75,7 @@ Stretch loud_stretch(const Record& record, const MultisineHeader& excitation) {
   }
   if (power.empty()) return {};
   const double full = kFullShare * *std::ranges::max_element(power);
-  const Stretch windows = longest(power.size(), [&](std::size_t i) { return power[i] >= full; });
+  const SampleRange windows = longest(power.size(), [&](std::size_t i) { return power[i] >= full; });
   const auto part = static_cast<std::size_t>(kPartly * static_cast<double>(excitation.period));
   return {windows.from * hop + part, (windows.to - 1) * hop + excitation.period - part};
 }
@@ -85,17 +85,17 @@ bool has_ride(const Record& record) {
   return ride != record.header.end() && !record.w_ref.empty();
 }
 
-Stretch steady_stretch(const Record& record, const MultisineHeader& excitation) {
+SampleRange steady_stretch(const Record& record, const MultisineHeader& excitation) {
   const std::size_t settling = static_cast<std::size_t>(kSettling * static_cast<double>(excitation.period));
   if (!excitation.is_closed_loop) {
     const double most =
         std::abs(*std::ranges::max_element(record.u_V, {}, [](double volts) { return std::abs(volts); }));
-    Stretch found = periodic_stretch(record.u_V, excitation.period, 5e-3 * most);
+    SampleRange found = periodic_stretch(record.u_V, excitation.period, 5e-3 * most);
     found.from += settling;
     return found;
   }
   if (!has_ride(record)) {
-    Stretch found = loud_stretch(record, excitation);
+    SampleRange found = loud_stretch(record, excitation);
     found.from += settling;
     return found;
   }
@@ -105,7 +105,7 @@ Stretch steady_stretch(const Record& record, const MultisineHeader& excitation) 
   const auto full = static_cast<std::size_t>(begin - record.w_ref.begin()) +
                     static_cast<std::size_t>(kFade * static_cast<double>(excitation.period));
   // A constant position means that the axis does not jog.
-  const Stretch found = longest(record.size(), [&](std::size_t k) {
+  const SampleRange found = longest(record.size(), [&](std::size_t k) {
     if (k < full || k + 1 >= record.size() || std::abs(record.w_ref[k]) < 0.05 * most) return false;
     if (!excitation.is_at_reference) return std::abs(record.w_ref[k + 1] - record.w_ref[k]) <= 1e-3 * most;
     return k + excitation.period >= record.size() ||
@@ -162,7 +162,7 @@ std::optional<MultisineHeader> multisine_of(const Record& record) {
 }
 
 PeriodicRun periodic_run(const Record& record, const MultisineHeader& excitation) {
-  const Stretch steady = steady_stretch(record, excitation);
+  const SampleRange steady = steady_stretch(record, excitation);
   const std::size_t periods = steady.length() / excitation.period;
   if (periods < 2)
     throw Failure(

@@ -18,7 +18,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+using std::numbers::pi;
 constexpr int kAliases = 4;            ///< images of the spectrum counted on each side
 constexpr double kLeastSpread = 2e-3;  ///< relative: smaller uncertainties of lines are raised to this
 constexpr int kIterations = 100, kTrial = 20;
@@ -27,13 +27,13 @@ constexpr double kMostDamping = 0.3;  ///< of a resonance
 constexpr double kStartDamping = 0.03;
 constexpr double kEarns = 14.0;      ///< required decrease of chi^2 by a mode with four parameters; 9.5 has p = 0.05
 constexpr double kEarnsShare = 0.1;  ///< required decrease as a share of the residual
-constexpr double kLeastShare = 0.1;  ///< smallest mode at its resonance, relative to the rigid part
+constexpr double kLeastMode = 0.1;   ///< smallest mode at its resonance, relative to the rigid part
 
 constexpr double kLagTells = 4.0;  ///< required decrease of chi^2 by a lag instead of a delay; p = 0.05
 constexpr double kNoDelay = 0.05;  ///< smallest significant delay or lag, in samples
 
 // Parameters of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
-constexpr std::size_t kRigid = 5, kPerMode = 4, kDelay = 3;
+constexpr std::size_t kRigidValues = 5, kPerMode = 4, kDelay = 3;
 
 /// Meaning of the value at kDelay.
 enum class Late { delay, lag };
@@ -47,7 +47,7 @@ PlantFit unpack(const double* value, std::size_t modes, Late late, double sample
   (late == Late::delay ? fit.delay_s : fit.lag_s).value = value[kDelay] * sample_period_s;
   fit.speed_delay_s = value[4] * sample_period_s;
   for (std::size_t i = 0; i < modes; ++i) {
-    const double* mode = value + kRigid + i * kPerMode;
+    const double* mode = value + kRigidValues + i * kPerMode;
     Resonance resonance;
     resonance.f_Hz.value = std::exp(mode[0]);
     resonance.damping.value = std::exp(mode[1]);
@@ -100,7 +100,7 @@ class Deviations {
     std::vector<double> gains;
     for (const Point& point : points_)
       if (point.channel == channel)
-        gains.push_back(std::abs(point.measured) * std::pow(kTwoPi * point.f_Hz, channel == 0 ? 2 : 1));
+        gains.push_back(std::abs(point.measured) * std::pow(2.0 * pi * point.f_Hz, channel == 0 ? 2 : 1));
     if (gains.empty()) return 1.0;
     std::ranges::nth_element(gains, gains.begin() + static_cast<std::ptrdiff_t>(gains.size() / 3));
     return gains[gains.size() / 3];
@@ -133,12 +133,12 @@ struct Fitted {
   double chi2 = 0.0;
   Eigen::MatrixXd covariance;
 
-  std::size_t modes() const { return (value.size() - kRigid) / kPerMode; }
+  std::size_t modes() const { return (value.size() - kRigidValues) / kPerMode; }
 };
 
 /// `iterations`: a few suffice to compare starting values.
 Fitted solve(const Deviations& deviations, std::vector<double> value, Late late, int iterations) {
-  const std::size_t modes = (value.size() - kRigid) / kPerMode;
+  const std::size_t modes = (value.size() - kRigidValues) / kPerMode;
   auto* cost = new ceres::DynamicNumericDiffCostFunction<Functor, ceres::FORWARD>(new Functor{deviations, modes, late});
   cost->AddParameterBlock(static_cast<int>(value.size()));
   cost->SetNumResiduals(static_cast<int>(deviations.count()));
@@ -147,7 +147,7 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, Late late,
   problem.SetParameterLowerBound(value.data(), kDelay, late == Late::delay ? -0.5 : 0.0);
   problem.SetParameterUpperBound(value.data(), kDelay, 20.0);
   for (std::size_t i = 0; i < modes; ++i) {
-    const int at = static_cast<int>(kRigid + i * kPerMode);
+    const int at = static_cast<int>(kRigidValues + i * kPerMode);
     problem.SetParameterLowerBound(value.data(), at, std::log(0.8 * deviations.lowest()));
     problem.SetParameterUpperBound(value.data(), at, std::log(1.25 * deviations.highest()));
     problem.SetParameterLowerBound(value.data(), at + 1, std::log(1e-3));
@@ -183,7 +183,7 @@ Fitted with_one_more(const Deviations& deviations, const Fitted& before, const s
       const double part = (i % kGrid + 0.5) / kGrid;
       value.insert(value.end(), {std::log(deviations.lowest()) * (1.0 - part) + std::log(deviations.highest()) * part,
                                  std::log(kStartDamping), position_share, speed_share});
-      const std::size_t modes = (value.size() - kRigid) / kPerMode;
+      const std::size_t modes = (value.size() - kRigidValues) / kPerMode;
       const PlantFit fit = unpack(value.data(), modes, before.late, deviations.sample_period_s());
       starts.emplace_back(deviations.sum_of_squares(fit), std::move(value));
     }
@@ -203,19 +203,19 @@ Fitted with_one_more(const Deviations& deviations, const Fitted& before, const s
 bool is_mode(const double* mode, const Deviations& deviations) {
   const double f = std::exp(mode[0]), damping = std::exp(mode[1]);
   const double at_resonance = std::max(std::abs(mode[2]), std::abs(mode[3])) / (2.0 * damping);
-  return f > deviations.lowest() && f < deviations.highest() && at_resonance > kLeastShare && damping < kMostDamping;
+  return f > deviations.lowest() && f < deviations.highest() && at_resonance > kLeastMode && damping < kMostDamping;
 }
 
 /// Whether an earlier mode lies within the width of this one, so that both describe one resonance.
 bool has_twin(const std::vector<double>& value, std::size_t at) {
-  for (std::size_t other = kRigid; other < at; other += kPerMode)
+  for (std::size_t other = kRigidValues; other < at; other += kPerMode)
     if (std::abs(value[other] - value[at]) < std::exp(value[other + 1]) + std::exp(value[at + 1])) return true;
   return false;
 }
 
 /// Removes modes that a later mode has made superfluous.
 void drop_what_is_no_mode(std::vector<double>& value, const Deviations& deviations) {
-  for (std::size_t at = kRigid; at < value.size();)
+  for (std::size_t at = kRigidValues; at < value.size();)
     if (is_mode(value.data() + at, deviations) && !has_twin(value, at))
       at += kPerMode;
     else
@@ -263,10 +263,10 @@ Eigen::Vector2cd PlantFit::at(double f_Hz) const {
   const double rate = 1.0 / sample_period_s;
   Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
   for (int image = -kAliases; image <= kAliases; ++image) {
-    const Complex s(0.0, kTwoPi * (f_Hz + image * rate));
+    const Complex s(0.0, 2.0 * pi * (f_Hz + image * rate));
     Complex x = 1.0 / (s * (s + pole)), w = 1.0 / (s + pole);
     for (const Resonance& mode : resonances) {
-      const double omega = kTwoPi * mode.f_Hz.value;
+      const double omega = 2.0 * pi * mode.f_Hz.value;
       const Complex one = 1.0 / (s * s + 2.0 * mode.damping.value * omega * s + omega * omega);
       x += mode.position_share * one;
       w += mode.speed_share * one * s;
@@ -300,8 +300,8 @@ PlantFit fit_plant(const FrequencyResponse& response) {
     const auto scaled = [&](Interval95& value, std::size_t at) {
       value.ci95 = {value.value * std::exp(-reach(at)), value.value * std::exp(reach(at))};
     };
-    scaled(mode.f_Hz, kRigid + i * kPerMode);
-    scaled(mode.damping, kRigid + i * kPerMode + 1);
+    scaled(mode.f_Hz, kRigidValues + i * kPerMode);
+    scaled(mode.damping, kRigidValues + i * kPerMode + 1);
   }
   std::ranges::sort(fit.resonances, {}, [](const Resonance& mode) { return mode.f_Hz.value; });
   return fit;

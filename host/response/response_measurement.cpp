@@ -21,8 +21,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kMostTo_Hz = 250.0;
-constexpr double kPeriods = 2.0;         ///< of a run: in short runs the jog is fast, and friction varies between runs
-constexpr double kRun = kPeriods + 1.4;  ///< periods, including fade-in and settling of the excitation
+constexpr double kRunPeriods = 2.0;  ///< of a run: in short runs the jog is fast, and friction varies between runs
+constexpr double kRun = kRunPeriods + 1.4;  ///< periods, including fade-in and settling of the excitation
 constexpr double kRunAndStop = kRun + 1.1;  ///< periods including the fade-out
 constexpr double kShareOfBands = 0.6;       ///< of the time; the rest is for more lines around resonances
 constexpr double kMostRealisations = 12.0;
@@ -30,13 +30,13 @@ constexpr double kRideOfBox = 0.45;      ///< speed of the jog relative to the b
 constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the response relative to the jog: the axis never reverses
 constexpr double kAnswerOfWatch = 0.4;   ///< peak of its position as a part of the following-error limit; the response
                                          ///< may be twice that of the rigid model
-constexpr double kWindow = 0.85;         ///< of half the travel at which the board reverses
+constexpr double kStrokeShare = 0.85;    ///< of half the travel at which the board reverses
 constexpr double kLinesPerOctave = 6.0;  ///< desired number
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
-class Planner {
+class BandPlanner {
  public:
-  Planner(const ResponsePlan& plan, const ExcitationScale& scale, const firmware::AxisParameters<float>& parameters)
+  BandPlanner(const ResponsePlan& plan, const ExcitationScale& scale, const firmware::AxisParameters<float>& parameters)
       : plan_(plan), scale_(scale), parameters_(parameters), controller_(parameters) {
     period_ = std::exp2(std::round(std::log2(scale.rate_Hz)));
     period_s_ = period_ / scale.rate_Hz;
@@ -109,7 +109,7 @@ class Planner {
 
   /// The highest jog speed that box and travel allow.
   double choose_ride(double run_s) const {
-    const double room = kWindow * plan_.box.travel / 2.0;
+    const double room = kStrokeShare * plan_.box.travel / 2.0;
     double ride = kRideOfBox * plan_.box.speed;
     ride = std::min({ride, room / run_s, static_cast<double>(parameters_.velocity_limit)});
     for (int i = 0; i < 20 && ride * run_s + stop(ride) > room; ++i) ride *= 0.95;
@@ -157,12 +157,12 @@ class Planner {
 
 std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
                                       const firmware::AxisParameters<float>& parameters) {
-  return Planner(plan, scale, parameters).bands();
+  return BandPlanner(plan, scale, parameters).bands();
 }
 
 std::vector<Excitation> plan_resonance(const ResponsePlan& plan, double f_Hz, const ExcitationScale& scale,
                                        const firmware::AxisParameters<float>& parameters) {
-  return Planner(plan, scale, parameters).about(f_Hz);
+  return BandPlanner(plan, scale, parameters).about(f_Hz);
 }
 
 void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector<Excitation>& runs,
@@ -190,7 +190,7 @@ void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& pla
   const firmware::AxisParameters<float> parameters = firmware::axis_parameters<float>(values.axis(axis));
   ResponsePlan part = plan;
   part.box.time_s = plan.box.time_s * kShareOfBands;
-  const Planner bands(part, scale, parameters);
+  const BandPlanner bands(part, scale, parameters);
   if (bands.least_s() > part.box.time_s) part.box.time_s = plan.box.time_s;
   const std::vector<Excitation> runs = plan_response(part, scale, parameters);
   const ClosedLoops loop(

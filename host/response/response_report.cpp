@@ -36,7 +36,7 @@ std::vector<double> unwrapped(const std::vector<Complex>& values) {
 }
 
 /// Complex values over frequency with the half width of their 95 % intervals.
-struct Curve {
+struct ResponseCurve {
   std::string name;
   SeriesRole role = SeriesRole::measured;
   SeriesStyle style = SeriesStyle::line_and_points;
@@ -45,7 +45,7 @@ struct Curve {
   std::vector<double> half_width = {};
 };
 
-ScatterSeries magnitude_of(const Curve& curve) {
+ScatterSeries magnitude_of(const ResponseCurve& curve) {
   ScatterSeries series{curve.name, curve.role, curve.style, curve.f_Hz, {}, {}, {}};
   for (std::size_t i = 0; i < curve.values.size(); ++i) {
     const double size = std::abs(curve.values[i]);
@@ -57,7 +57,7 @@ ScatterSeries magnitude_of(const Curve& curve) {
   return series;
 }
 
-ScatterSeries phase_of(const Curve& curve) {
+ScatterSeries phase_of(const ResponseCurve& curve) {
   ScatterSeries series{curve.name, curve.role, curve.style, curve.f_Hz, unwrapped(curve.values), {}, {}};
   for (std::size_t i = 0; i < curve.half_width.size(); ++i) {
     const double reach = std::atan2(curve.half_width[i], std::abs(curve.values[i])) * kDegreesPerRadian;
@@ -78,8 +78,9 @@ ScatterPlot over_frequency(std::string title, std::string caption, Axis y, std::
   return plot;
 }
 
-Curve plant_curve(const FrequencyResponse& response, Eigen::Index channel, const std::string& name, SeriesRole role) {
-  Curve curve{name, role, SeriesStyle::line_and_points, {}, {}, {}};
+ResponseCurve plant_curve(const FrequencyResponse& response, Eigen::Index channel, const std::string& name,
+                          SeriesRole role) {
+  ResponseCurve curve{name, role, SeriesStyle::line_and_points, {}, {}, {}};
   for (const ResponseLine& line : response.lines) {
     curve.f_Hz.push_back(line.f_Hz);
     curve.values.push_back(line.plant(channel));
@@ -114,12 +115,12 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
   for (const Eigen::Index channel : {0, 1}) {
     if (channel == 0 ? !response.has_position : !response.has_speed) continue;
     const std::string name = channel == 0 ? "position" : "speed";
-    std::vector<Curve> curves;
+    std::vector<ResponseCurve> curves;
     if (before != nullptr) curves.push_back(plant_curve(before->response, channel, "before", SeriesRole::before));
     const bool is_measured = response.method != FrequencyResponse::Method::model;
     curves.push_back(plant_curve(response, channel, is_measured ? "measured" : "model", SeriesRole::measured));
     if (axis.fit && is_measured) {
-      Curve fitted{"fit", SeriesRole::model, SeriesStyle::line, {}, {}, {}};
+      ResponseCurve fitted{"fit", SeriesRole::model, SeriesStyle::line, {}, {}, {}};
       const double low = response.lines.front().f_Hz, high = response.lines.back().f_Hz;
       for (int i = 0; i <= 300; ++i) {
         fitted.f_Hz.push_back(low * std::pow(high / low, i / 300.0));
@@ -128,7 +129,7 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
       curves.push_back(std::move(fitted));
     }
     std::vector<ScatterSeries> magnitudes, phases;
-    for (const Curve& curve : curves) {
+    for (const ResponseCurve& curve : curves) {
       magnitudes.push_back(magnitude_of(curve));
       phases.push_back(phase_of(curve));
     }
@@ -188,7 +189,7 @@ ScatterSeries locus(const OpenLoop& loop, const std::string& name, SeriesRole ro
 void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* before) {
   const OpenLoop& loop = *axis.loop;
   report.section("Loop", "The drive with the axis's own estimator and feedback, cut at the drive's input.");
-  std::vector<Curve> curves, sensitivities;
+  std::vector<ResponseCurve> curves, sensitivities;
   const auto append = [&](const OpenLoop& one, const std::string& name, SeriesRole role) {
     curves.push_back({name, role, SeriesStyle::line, one.fine_f_Hz, one.fine_L, {}});
     sensitivities.push_back({name, role, SeriesStyle::line, one.fine_f_Hz, sensitivity(one.fine_L), {}});
@@ -198,11 +199,11 @@ void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* befo
   if (axis.response.method != FrequencyResponse::Method::model)
     curves.push_back({"measured lines", SeriesRole::measured, SeriesStyle::points, loop.f_Hz, loop.L, loop.half_width});
   std::vector<ScatterSeries> magnitudes, phases, peaks;
-  for (const Curve& curve : curves) {
+  for (const ResponseCurve& curve : curves) {
     magnitudes.push_back(magnitude_of(curve));
     phases.push_back(phase_of(curve));
   }
-  for (const Curve& curve : sensitivities) peaks.push_back(magnitude_of(curve));
+  for (const ResponseCurve& curve : sensitivities) peaks.push_back(magnitude_of(curve));
   report.add(
       over_frequency("Open loop, magnitude", "It crosses 0 dB at the crossover.", {"open loop", "dB"}, magnitudes));
   report.add(over_frequency("Open loop, phase", "Its distance from -180 degrees at the crossover is the phase margin.",

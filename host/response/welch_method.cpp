@@ -13,9 +13,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kStretch_s = 1.0;  ///< length of a segment: lines 1 Hz apart
-constexpr std::size_t kFewest = 8;  ///< least number of segments; they are shortened to reach it
-constexpr double kHighest = 0.4;    ///< highest frequency relative to the sample rate
+constexpr double kStretch_s = 1.0;          ///< length of a segment: lines 1 Hz apart
+constexpr std::size_t kFewestSegments = 8;  ///< least number of segments; they are shortened to reach it
+constexpr double kHighest = 0.4;            ///< highest frequency relative to the sample rate
 constexpr double kChance = 0.05;
 constexpr std::size_t kLowest = 2;  ///< lowest line; below it the window's main lobe reaches 0 Hz
 
@@ -31,7 +31,7 @@ std::size_t stretch_of(const std::vector<Record>& records) {
   std::size_t samples = 0;
   for (const Record& record : records) samples += record.size();
   const double wanted = std::min(kStretch_s / records.front().sample_period_s,
-                                 2.0 * static_cast<double>(samples) / static_cast<double>(kFewest + 1));
+                                 2.0 * static_cast<double>(samples) / static_cast<double>(kFewestSegments + 1));
   return static_cast<std::size_t>(std::exp2(std::round(std::log2(std::max(16.0, wanted)))));
 }
 

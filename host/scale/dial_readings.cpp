@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kFewestReadings = 4, kMostReadings = 500;
+constexpr std::size_t kFewestPoints = 4, kMostReadings = 500;
 
 struct DialColumn {
   std::size_t place = 0;
@@ -49,9 +49,9 @@ class DialFile {
       readings_.x_mm.push_back(number(*x));
       readings_.dial_mm.push_back(number(*dial));
     }
-    if (readings_.x_mm.size() < kFewestReadings)
+    if (readings_.x_mm.size() < kFewestPoints)
       fail(fmt::format("{} readings: give {} or more, with the columns x_mm and dial_mm", readings_.x_mm.size(),
-                       kFewestReadings));
+                       kFewestPoints));
     turn();
     return std::move(readings_);
   }

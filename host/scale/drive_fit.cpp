@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDegrees = 4.0;  // degrees of freedom of the t distribution, see infer/evidence.hpp
+constexpr double kStudentDegrees = 4.0;  // degrees of freedom of the t distribution, see infer/evidence.hpp
 
 std::vector<DriveRange> free_numbers(const TableDrive& drive, double deceleration) {
   std::vector<DriveRange> numbers = shape_ranges(drive, deceleration);
@@ -62,7 +62,7 @@ class Remainder {
     constexpr int kRounds = 20;
     for (int round = 0; round < kRounds; ++round) {
       const Eigen::ArrayXd squares = left.array().square();
-      const double next = ((kDegrees + 1.0) * squares / (kDegrees + squares / square)).mean();
+      const double next = ((kStudentDegrees + 1.0) * squares / (kStudentDegrees + squares / square)).mean();
       square = std::max(next, least);
     }
     return std::sqrt(square);
@@ -72,7 +72,7 @@ class Remainder {
   double cost_of(const VectorXd& left) const {
     const double scale = scale_of(left);
     return 2.0 * static_cast<double>(left.size()) * std::log(scale) +
-           (kDegrees + 1.0) * (left.array().square() / (kDegrees * scale * scale)).log1p().sum();
+           (kStudentDegrees + 1.0) * (left.array().square() / (kStudentDegrees * scale * scale)).log1p().sum();
   }
 
  private:
@@ -123,7 +123,7 @@ class DriveCost : public ceres::CostFunction {
         all(rows_ + k, point) = (points(k, point) - one.middle) / one.deviation;
       }
     const Eigen::ArrayXXd left = remainder_.of(drives).array() / scale_;
-    all.topRows(rows_) = left.sign() * ((kDegrees + 1.0) * (left.square() / kDegrees).log1p()).sqrt();
+    all.topRows(rows_) = left.sign() * ((kStudentDegrees + 1.0) * (left.square() / kStudentDegrees).log1p()).sqrt();
     return all;
   }
 

@@ -36,10 +36,6 @@ TableSize amplitude_of(std::string name, const VectorXd& factors, const MatrixXd
   return size(std::move(name), "um", value, std::sqrt(std::max(0.0, along.dot(covariance * along))));
 }
 
-double turn_of(const sim::DataSheet& data) {
-  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
-}
-
 /// Discs, couplings, pole pairs and resolvers have an error a few times per turn. A grating may have it with any
 /// period.
 constexpr int kFewParts = 8;
@@ -122,7 +118,7 @@ void fill_compliance(const TableTerm& term, const MatrixXd& own, const sim::Driv
 }  // namespace
 
 std::string place_of(const TableTerm& term, const TableRows& rows, const sim::DriveDescription& model) {
-  const std::optional<int> part = part_of_a_turn(term.shape[0], rows, turn_of(model.data));
+  const std::optional<int> part = part_of_a_turn(term.shape[0], rows, model.data.turn());
   return !part ? "scale" : *part <= kFewParts ? "motor" : "scale or motor";
 }
 
@@ -198,7 +194,7 @@ TableEffect table_effect(const TableTerm& term, const EvidenceFit& fit, const Ma
   } else if (term.kind == "pitch_error") {
     fill_pitch(term, factors, own, rows, to_unit, effect);
   } else if (term.kind == "encoder_cyclic_error") {
-    const std::optional<int> part = part_of_a_turn(term.shape[0], rows, turn_of(model.data));
+    const std::optional<int> part = part_of_a_turn(term.shape[0], rows, model.data.turn());
     effect.place = place_of(term, rows, model);
     effect.sizes.push_back(amplitude_of("amplitude", factors, own));
     effect.sizes.push_back({"period", "mm", term.shape[0], {term.shape[0], term.shape[0]}});

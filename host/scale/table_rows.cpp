@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// More rows add no information about some dozen factors.
-constexpr std::size_t kMostRows = 2400;
+constexpr std::size_t kMostTableRows = 2400;
 
 double mm_of(const Record& record) { return record.kind == sim::DriveKind::linear ? 1e3 : 1.0; }
 
@@ -116,7 +116,7 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::Drive
   const bool wants_effort = std::ranges::any_of(records, has_effort);
   for (const Record* record : records)
     if (record->has_position() && record->has_table_position()) samples += record->size();
-  const std::size_t stride = std::max<std::size_t>(1, (samples + kMostRows - 1) / kMostRows);
+  const std::size_t stride = std::max<std::size_t>(1, (samples + kMostTableRows - 1) / kMostTableRows);
   Index count = 0;
   for (const Record* record : records) {
     if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;

@@ -25,12 +25,12 @@ using Eigen::VectorXd;
 VectorXd without(const VectorXd& y, const MatrixXd& columns) { return y - columns * least_norm_solution(columns, y); }
 
 /// Number of most promising forms of one kind that are fitted in full.
-constexpr std::size_t kFormsFitted = 3;
+constexpr std::size_t kTableForms = 3;
 /// Largest number of effects, and of cyclic errors. No machine has as many.
-constexpr std::size_t kMostEffects = 8, kMostCyclic = 3;
+constexpr std::size_t kMostTableEffects = 8, kMostCyclic = 3;
 
 /// The result of adding or removing one term.
-struct Fitted {
+struct TableFit {
   TableTerm term;
   double log_evidence = 0.0;  ///< averaged over the forms, nats
 };
@@ -45,9 +45,9 @@ const TableDrive* drive_of(const std::vector<TableTerm>& terms) {
   return driven == terms.end() ? nullptr : &driven->drive;
 }
 
-class Search {
+class TableSearch {
  public:
-  Search(const sim::DriveDescription& model, TableRows& rows, double usual)
+  TableSearch(const sim::DriveDescription& model, TableRows& rows, double usual)
       : model_(model),
         rows_(rows),
         usual_(usual),
@@ -86,8 +86,8 @@ class Search {
   }
 
   /// The best form of a kind beside the chosen terms; the log evidence is averaged over all forms.
-  std::optional<Fitted> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
-                                  const EvidenceFit& before) const {
+  std::optional<TableFit> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                    const EvidenceFit& before) const {
     if (kind == "compliance" || kind == "backlash") return best_driven(kind, chosen, before);
     const std::vector<TableTerm> forms = table_forms(kind, rows_);
     if (forms.empty()) return {};
@@ -107,7 +107,7 @@ class Search {
     if (!std::isfinite(gains[order.front()])) return {};
     std::vector<TableTerm> best;
     EvidenceFit best_fit;
-    for (std::size_t k = 0; k < std::min(kFormsFitted, order.size()) && std::isfinite(gains[order[k]]); ++k) {
+    for (std::size_t k = 0; k < std::min(kTableForms, order.size()) && std::isfinite(gains[order[k]]); ++k) {
       std::vector<TableTerm> all = chosen;
       all.push_back(forms[order[k]]);
       EvidenceFit fit = fit_from(before, all);
@@ -119,7 +119,7 @@ class Search {
     refine(best, best_fit);
     if (rms_of_last(best, best_fit) < rows_.step_um / std::sqrt(12.0)) return {};
     const double spread = log_sum(gains) - gains[order.front()] - std::log(static_cast<double>(forms.size()));
-    return Fitted{best.back(), best_fit.log_evidence + std::min(spread, 0.0)};
+    return TableFit{best.back(), best_fit.log_evidence + std::min(spread, 0.0)};
   }
 
   /// Changes the nonlinear parameters of the last term to maximise the evidence.
@@ -239,15 +239,15 @@ class Search {
   }
 
   /// The best fit with a gap or a spring added; if the other one is among the chosen terms, both share one drive.
-  std::optional<Fitted> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
-                                    const EvidenceFit& before) const {
+  std::optional<TableFit> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                      const EvidenceFit& before) const {
     std::vector<TableTerm> all = chosen;
     all.push_back({std::string(kind), {}, {}, deceleration_});
     settle_drive_anew(all, before.colour);
     EvidenceFit fit = fit_from(before, all);
     refine(all, fit);
     if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
-    return Fitted{all.back(), fit.log_evidence};
+    return TableFit{all.back(), fit.log_evidence};
   }
 
   /// The columns give the probability of a change of the drive; this adds the prior probability of the drive itself.
@@ -315,7 +315,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   take_out_known(model, study.rows);
   study.noise_um = study.rows.noise_um;
   const double usual = std::max(rms(without(study.rows.y, table_base(study.rows))), study.noise_um);
-  Search search(model, study.rows, usual);
+  TableSearch search(model, study.rows, usual);
   const Index base = table_base(study.rows).cols();
 
   std::vector<TableTerm> chosen;
@@ -324,16 +324,16 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   search.note_motor(chosen, search.fit(chosen));
   EvidenceFit fit = search.fit(chosen);
   Progress progress("measuring the table against the motor", std::size(kTableKinds));
-  while (chosen.size() < kMostEffects) {
+  while (chosen.size() < kMostTableEffects) {
     if (!chosen.empty()) progress.add_steps(std::size(kTableKinds));
-    std::vector<Fitted> found;
+    std::vector<TableFit> found;
     std::vector<std::pair<std::string, double>> denied;
     std::vector<double> logs = {std::log(kNothingMore) + fit.log_evidence};
     for (const std::string_view kind : kTableKinds) {
       progress.advance(1, kind);
       if (count_of(chosen, kind) >= (kind == "encoder_cyclic_error" ? kMostCyclic : 1) || stands_in(model, kind))
         continue;
-      if (std::optional<Fitted> best = search.best_form(kind, chosen, fit)) {
+      if (std::optional<TableFit> best = search.best_form(kind, chosen, fit)) {
         logs.push_back(std::log((1.0 - kNothingMore) / std::size(kTableKinds)) + best->log_evidence);
         found.push_back(*std::move(best));
       } else if (count_of(chosen, kind) == 0 && search.can_show(kind)) {

@@ -15,7 +15,7 @@ namespace host {
 
 namespace {
 
-constexpr int kMostRounds = 12;  // limits the time
+constexpr int kMostWaves = 12;  // limits the time
 
 /// The model with the strongest waves of this effect in the residual, all at once: of several equal ones, each alone
 /// hardly lowers the error. Empty if the residual has no further wave.
@@ -39,7 +39,7 @@ std::optional<sim::DriveDescription> with_next_waves(const sim::EffectInfo& info
 void add_further_waves(Candidate& candidate, const PreparedSets& sets) {
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   if (!info.periodic) return;
-  for (int round = 0; round < kMostRounds && candidate.validation.combined > kExplained; ++round) {
+  for (int round = 0; round < kMostWaves && candidate.validation.combined > kExplained; ++round) {
     const std::optional<sim::DriveDescription> model = with_next_waves(info, candidate.model, sets.training);
     if (!model) return;
     Candidate further = judged(candidate.kinds, *model, sets.training, sets.validation);

@@ -1,14 +1,13 @@
 #include "host/simulated_board/usual_wiring.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace host {
 
 hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home) {
   hal::pc::AxisWiring wiring;
   wiring.home = home;
-  wiring.index_spacing = data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
+  wiring.index_spacing = data.turn();
   wiring.index_offset = 1.0;
   return wiring;
 }

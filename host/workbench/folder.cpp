@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 2000, kLongestName = 500;
-constexpr int kDeepest = 4;
+constexpr int kMostLevels = 4;
 
 bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
@@ -93,7 +93,7 @@ std::vector<FolderFile> Folder::files() const {
        entry.increment(unreadable)) {
     const std::string name = entry->path().lexically_relative(root_).string();
     std::error_code gone;
-    if (entry->is_directory(gone) && (!is_plain_name(name) || name == kOwnFolder || entry.depth() >= kDeepest))
+    if (entry->is_directory(gone) && (!is_plain_name(name) || name == kOwnFolder || entry.depth() >= kMostLevels))
       entry.disable_recursion_pending();
     if (!is_plain_name(name) || !entry->is_regular_file(gone)) continue;
     const fs::path real = fs::canonical(entry->path(), gone);

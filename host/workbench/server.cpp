@@ -50,7 +50,7 @@ enum Status { ok = 200, bad_request = 400, forbidden = 403, not_found = 404, too
 constexpr std::size_t kThreads = 64;
 constexpr time_t kPatience_s = 5;
 /// Buckets of a range of a paused stream.
-constexpr std::size_t kPoints = 1500;
+constexpr std::size_t kRowsShown = 1500;
 constexpr std::chrono::seconds kLongestBody(10), kLongestUpload(600);
 
 /// Loads only the page's own files; displayed content cannot contain scripts.
@@ -363,7 +363,7 @@ struct Server::Parts {
         [this](const Query& query, Response& response) { stream_live(board(), query, response, streams, is_ending); });
     get("/api/live/parameters", [this](const Query&, Response& response) { send(response, board().parameters()); });
     command("/api/live/rows",
-            [](Live& board, const std::string& body) { return board.rows(parse_rows(body), kPoints); });
+            [](Live& board, const std::string& body) { return board.rows(parse_rows(body), kRowsShown); });
     command("/api/live/claim", [](Live& board, const std::string& body) {
       object_of(body);
       return json{{"owner", board.claim()}, {"number", board.state()["owner"]}};

@@ -26,7 +26,7 @@ using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
 
 /// The smallest possible sectors, because memory beyond the set is not used.
-SimulatedFlash blank_flash() { return SimulatedFlash(2, 2048, 4); }
+SimulatedFlash blank_store() { return SimulatedFlash(2, 2048, 4); }
 
 /// A set in which every parameter differs from every other generation's.
 ParameterValues generation(int number) {
@@ -63,14 +63,14 @@ void save(SimulatedFlash& flash, const ParameterValues& values) {
 }
 
 TEST(ParameterStore, IsEmptyOnABlankChip) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   const StoredParameters found = load_at_start(flash);
   EXPECT_EQ(found.report.state, StoreState::empty);
   EXPECT_EQ(found.values, ParameterValues{});
 }
 
 TEST(ParameterStore, ReturnsTheLastOfManySaves) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   for (int i = 1; i <= 7; ++i) {
     save(flash, generation(i));
     const StoredParameters found = load_at_start(flash);
@@ -82,7 +82,7 @@ TEST(ParameterStore, ReturnsTheLastOfManySaves) {
 }
 
 TEST(ParameterStore, SavesTwiceWithoutARestart) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   Store store(flash);
   ASSERT_EQ(store.save(generation(1)), SaveResult::saved);
   ASSERT_EQ(store.save(generation(2)), SaveResult::saved);
@@ -140,7 +140,7 @@ std::size_t cut_everywhere(const SimulatedFlash& before, const ParameterValues& 
 }
 
 TEST(PowerCut, AtEveryOperationOfTwoSavesLeavesTheOldSetOrTheNew) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   save(flash, generation(1));
   // Each save: one erase, two words for each entry, six words of header, two marks.
   EXPECT_EQ(cut_everywhere(flash, generation(1), StoreState::loaded),
@@ -148,12 +148,12 @@ TEST(PowerCut, AtEveryOperationOfTwoSavesLeavesTheOldSetOrTheNew) {
 }
 
 TEST(PowerCut, AtEveryOperationOfTheFirstSaveEverLeavesNothingOrTheNewSet) {
-  cut_everywhere(blank_flash(), ParameterValues{}, StoreState::empty);
+  cut_everywhere(blank_store(), ParameterValues{}, StoreState::empty);
 }
 
 /// A power cut during a save, and another during the next save.
 TEST(PowerCut, TwiceInARowLeavesOneOfTheSetsThatWereSaved) {
-  SimulatedFlash before = blank_flash();
+  SimulatedFlash before = blank_store();
   save(before, generation(1));
   const std::size_t per_save = before.operations();
   std::size_t cuts = 0;
@@ -179,7 +179,7 @@ TEST(PowerCut, TwiceInARowLeavesOneOfTheSetsThatWereSaved) {
 }
 
 TEST(DamagedStore, IsNamedAndNeverReplacedByTheSetBefore) {
-  SimulatedFlash whole = blank_flash();
+  SimulatedFlash whole = blank_store();
   save(whole, generation(1));
   save(whole, generation(2));
   const std::size_t newest = 1;
@@ -199,7 +199,7 @@ TEST(DamagedStore, IsNamedAndNeverReplacedByTheSetBefore) {
 }
 
 TEST(DamagedStore, HealsByTheNextSave) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   save(flash, generation(1));
   save(flash, generation(2));
   flash.contents()[1][100] ^= std::byte{1};
@@ -210,7 +210,7 @@ TEST(DamagedStore, HealsByTheNextSave) {
 }
 
 TEST(DamagedStore, OfTheOlderSetIsNoMatter) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   save(flash, generation(1));
   save(flash, generation(2));
   flash.contents()[0][100] ^= std::byte{1};
@@ -219,7 +219,7 @@ TEST(DamagedStore, OfTheOlderSetIsNoMatter) {
 }
 
 TEST(DamagedStore, BothSlots) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   save(flash, generation(1));
   save(flash, generation(2));
   for (auto& sector : flash.contents()) sector[100] ^= std::byte{1};
@@ -250,7 +250,7 @@ TEST(ParameterStore, ReadsBackWhatItWroteBeforeItCounts) {
 
 /// A set as another firmware wrote it: by hand, from the description of the layout.
 SimulatedFlash flash_of_another_table(const std::vector<firmware::StoredEntry>& entries) {
-  SimulatedFlash flash = blank_flash();
+  SimulatedFlash flash = blank_store();
   firmware::StoredHeader header{firmware::kStoreMagic, 0x12345678, 9, 0, 17, 0};
   header.length = static_cast<std::uint32_t>(entries.size() * sizeof(firmware::StoredEntry));
   firmware::Crc32 crc;

@@ -37,7 +37,7 @@ double number_from(const char* variable, double otherwise) {
   return text == nullptr ? otherwise : std::strtod(text, nullptr);
 }
 
-Lines lines_of(const std::string& text) {
+Lines printed_lines(const std::string& text) {
   Lines lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -108,7 +108,7 @@ class Mutator {
   explicit Mutator(std::mt19937& random) : random_(random) {}
 
   std::string record(const std::string& text) {
-    Lines lines = lines_of(text);
+    Lines lines = printed_lines(text);
     constexpr std::size_t kNames = 3;
     for (std::size_t times = 1 + below(3); times > 0 && lines.size() > kNames + 2; --times) {
       const std::size_t row = kNames + 1 + below(lines.size() - kNames - 1);
@@ -163,7 +163,7 @@ class Mutator {
   }
 
   std::string toml(const std::string& text) {
-    Lines lines = lines_of(text);
+    Lines lines = printed_lines(text);
     for (std::size_t times = 1 + below(3); times > 0 && !lines.empty(); --times) {
       std::string& line = lines[below(lines.size())];
       const std::size_t equals = line.find('=');

@@ -17,7 +17,7 @@ std::vector<double> priors(const std::vector<host::Wave>& waves, const sim::Data
 TEST(EffortWaves, TheTurnHasHalfOfThePriorByOneOverTheOrder) {
   sim::DataSheet screw;
   screw.lead = 10.0 / (2.0 * std::numbers::pi);
-  const double turn = host::turn_of(screw);
+  const double turn = screw.turn();
   const std::vector<double> shares = priors({{turn, 1.0}, {turn, 2.0}, {turn, 4.0}, {3.3, 1.0}, {4.4, 1.0}}, screw);
   EXPECT_NEAR(shares[0], 0.5 / 1.75, 1e-12);
   EXPECT_NEAR(shares[1], shares[0] / 2.0, 1e-12);

@@ -7,7 +7,7 @@
 
 namespace {
 
-using host::Quantity;
+using host::ChannelQuantity;
 
 host::ChannelName named(const std::string& name, const std::string& unit = "") {
   host::LogColumn column;
@@ -18,41 +18,41 @@ host::ChannelName named(const std::string& name, const std::string& unit = "") {
 
 struct Case {
   const char* name;
-  Quantity quantity;
+  ChannelQuantity quantity;
   bool is_reference;
 };
 
 TEST(ChannelName, QuantityInSixLanguagesAndMore) {
   constexpr Case kCases[] = {
-      {"Time(ms)", Quantity::time, false},
-      {"Iq(A)", Quantity::current, false},
-      {"ActPos(inc)", Quantity::position, false},
-      {"SetPos(mm)", Quantity::position, true},
-      {"Iist [A]", Quantity::current, false},
-      {"Soll [mm]", Quantity::position, true},
-      {"Lagesollwert [mm]", Quantity::position, true},
-      {"Drehzahlistwert [1/min]", Quantity::speed, false},
-      {"Drehmomentistwert [Nm]", Quantity::torque, false},
-      {"Schleppabstand [mm]", Quantity::other, false},
-      {"Position réelle [mm]", Quantity::position, false},
-      {"Vitesse de consigne (tr/min)", Quantity::speed, true},
-      {"Courant moteur [A]", Quantity::current, false},
-      {"Posición real (mm)", Quantity::position, false},
-      {"Velocidad (mm/s)", Quantity::speed, false},
-      {"Corriente [A]", Quantity::current, false},
-      {"Posizione attuale [mm]", Quantity::position, false},
-      {"Coppia [Nm]", Quantity::torque, false},
-      {"Положение, мм", Quantity::position, false},
-      {"Скорость [рад/с]", Quantity::speed, false},
-      {"Ток [А]", Quantity::current, false},
-      {"Время, мс", Quantity::time, false},
-      {"实际位置(mm)", Quantity::position, false},
-      {"指令位置(mm)", Quantity::position, true},
-      {"电流(A)", Quantity::current, false},
-      {"回転数[rpm]", Quantity::speed, false},
-      {"X1_ActualAcceleration", Quantity::other, false},
-      {"X1_DCBusVoltage", Quantity::other, false},
-      {"velCmd", Quantity::speed, true},
+      {"Time(ms)", ChannelQuantity::time, false},
+      {"Iq(A)", ChannelQuantity::current, false},
+      {"ActPos(inc)", ChannelQuantity::position, false},
+      {"SetPos(mm)", ChannelQuantity::position, true},
+      {"Iist [A]", ChannelQuantity::current, false},
+      {"Soll [mm]", ChannelQuantity::position, true},
+      {"Lagesollwert [mm]", ChannelQuantity::position, true},
+      {"Drehzahlistwert [1/min]", ChannelQuantity::speed, false},
+      {"Drehmomentistwert [Nm]", ChannelQuantity::torque, false},
+      {"Schleppabstand [mm]", ChannelQuantity::other, false},
+      {"Position réelle [mm]", ChannelQuantity::position, false},
+      {"Vitesse de consigne (tr/min)", ChannelQuantity::speed, true},
+      {"Courant moteur [A]", ChannelQuantity::current, false},
+      {"Posición real (mm)", ChannelQuantity::position, false},
+      {"Velocidad (mm/s)", ChannelQuantity::speed, false},
+      {"Corriente [A]", ChannelQuantity::current, false},
+      {"Posizione attuale [mm]", ChannelQuantity::position, false},
+      {"Coppia [Nm]", ChannelQuantity::torque, false},
+      {"Положение, мм", ChannelQuantity::position, false},
+      {"Скорость [рад/с]", ChannelQuantity::speed, false},
+      {"Ток [А]", ChannelQuantity::current, false},
+      {"Время, мс", ChannelQuantity::time, false},
+      {"实际位置(mm)", ChannelQuantity::position, false},
+      {"指令位置(mm)", ChannelQuantity::position, true},
+      {"电流(A)", ChannelQuantity::current, false},
+      {"回転数[rpm]", ChannelQuantity::speed, false},
+      {"X1_ActualAcceleration", ChannelQuantity::other, false},
+      {"X1_DCBusVoltage", ChannelQuantity::other, false},
+      {"velCmd", ChannelQuantity::speed, true},
   };
   for (const Case& expected : kCases) {
     const host::ChannelName name = named(expected.name);
@@ -79,7 +79,7 @@ TEST(ChannelName, UnitsAndTheirFactors) {
 
 TEST(ChannelName, WordsThatLookLikeUnitsAreNone) {
   EXPECT_FALSE(named("current_in").unit);  // not an inch
-  EXPECT_EQ(named("current_in").quantity, Quantity::other);
+  EXPECT_EQ(named("current_in").quantity, ChannelQuantity::other);
 }
 
 TEST(ChannelName, AxesByLettersAndNumbers) {
