@@ -164,6 +164,18 @@ std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis
   return {};
 }
 
+/// "61.01", and what compare prints for the given model if the refitted base differs from it.
+std::string error_before(const sim::DriveDescription& given, const Diagnosis& diagnosis) {
+  constexpr double kSame = 0.05;
+  const double refitted = diagnosis.printed_base().validate;
+  std::string text = fmt::format("{:.2f}", refitted);
+  if (!diagnosis.judged_as_compared()) return text;
+  const double as_given = diagnosis.rows.error_of(given).validate.combined;
+  if (std::abs(as_given - refitted) > kSame * refitted)
+    text += fmt::format(" (base refitted; {:.2f} as given)", as_given);
+  return text;
+}
+
 }  // namespace
 
 bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after) {
@@ -251,10 +263,11 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
     if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
     verdict.explanation = fmt::format(
-        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of the "
+        "{} ({}) lowers the error on validation data from {} to {:.2f} times the noise floor: {:.0f} % of the "
         "explainable error. {}.",
         fmt::join(titles, " and "), parameters_in_words(*chosen->model.find(chosen->kinds.back()), given.data.kind),
-        before, Diagnosis::printed(*chosen).validate, 100.0 * explained_by(*chosen, diagnosis), first.shows);
+        error_before(given, diagnosis), Diagnosis::printed(*chosen).validate, 100.0 * explained_by(*chosen, diagnosis),
+        first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)
