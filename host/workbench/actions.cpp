@@ -1,6 +1,7 @@
 #include "host/workbench/actions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,7 @@
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/import/mapping.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/known_parameters.hpp"
 #include "host/model/model_file.hpp"
@@ -236,7 +238,12 @@ nlohmann::json cut_out(const Folder& folder, const CutRequest& request) {
 nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request) {
   std::string command = "axistool open";
   for (const std::string& log : request.logs) command += fmt::format(" {}", shell_word(folder.existing(log)));
-  const Opening opening = open_logs(request.logs, {});
+  OpeningOptions options;
+  if (const std::string map = fmt::format("{}", fmt::join(request.map, ",")); !map.empty()) {
+    command += fmt::format(" --map {}", shell_word(map));
+    options.hints.mappings = parse_mappings(map);
+  }
+  const Opening opening = open_logs(request.logs, options);
   const std::filesystem::path first(request.logs.front());
   const std::string target =
       folder.free_name(request.logs.size() == 1 ? std::filesystem::path(first).replace_extension().string()

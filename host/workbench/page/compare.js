@@ -4,7 +4,7 @@ import { effects } from "./catalogue.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
 import { post } from "./exchange.js";
 import { compared } from "./jobs.js";
-import { firstLook, mostProbable } from "./look.js";
+import { firstLook, ranked } from "./look.js";
 import { plots, save } from "./plot_files.js";
 import { showPicture } from "./record.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
@@ -61,13 +61,17 @@ export function drawComparison(place, told, onZoom, moreTools) {
   place.style.minHeight = "";
 }
 
-/** Shows beside the comparison the most probable answer of the force-balance regression, as soon as it is known. */
+const kRankedShown = 4;
+
+/** Shows beside the comparison the most probable answers of the force-balance regression, as soon as they are known. */
 async function showFirstLook(head) {
   const [look, catalogue] = await Promise.all([firstLook(), effects()]);
   if (!look || !head.isConnected) return;
-  const { kinds, title, probability } = mostProbable(look.document);
-  const name = title || kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ");
-  head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + name + " " + percent(probability)));
+  const named = ({ kinds, title, probability }) =>
+    (title || kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ")) + " " + percent(probability);
+  const answers = ranked(look.document);
+  const shown = answers.filter((one, k) => k === 0 || (k < kRankedShown && one.probability >= 0.01));
+  head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + shown.map(named).join(", ")));
 }
 
 /** Form for the options: record of the traces, period, time range. */
@@ -202,6 +206,7 @@ export async function showCompare(place) {
   try {
     const { told, show } = await showComparison(body, [choice.model, ...choice.beside], records, options);
     if (mine !== asked || !place.isConnected) return;
+    firstLook(); // is computed while this is drawn
     const scrolled = window.scrollY;
     forgetPlots();
     options.onZoom = zoomTools(told.traces, again);
