@@ -52,12 +52,13 @@ export function drawComparison(place, told, onZoom, moreTools) {
   if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
   const parts = partsOf(told.report);
   const page = () => save("comparison.html", new Blob([told.report], { type: "text/html" }));
-  place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
+  place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
   const links = el("div");
   place.append(links);
   const sections = sectionLinks([showBlocks(place, parts, () => true, onZoom, moreTools)]);
   sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
   links.replaceWith(sections);
+  place.append(commandLine(told.command));
   place.style.minHeight = "";
 }
 
@@ -206,7 +207,6 @@ export async function showCompare(place) {
   try {
     const { told, show } = await showComparison(body, [choice.model, ...choice.beside], records, options);
     if (mine !== asked || !place.isConnected) return;
-    firstLook(); // is computed while this is drawn
     const scrolled = window.scrollY;
     forgetPlots();
     options.onZoom = zoomTools(told.traces, again);
