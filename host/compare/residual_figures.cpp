@@ -65,8 +65,8 @@ BinnedCurve joined(const BinnedCurve& curve) {
   BinnedCurve all;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {
     if (std::isnan(curve.mean[k])) continue;
-    for (const auto values : {&BinnedCurve::x, &BinnedCurve::mean, &BinnedCurve::lower, &BinnedCurve::upper,
-                              &BinnedCurve::samples})
+    for (const auto values :
+         {&BinnedCurve::x, &BinnedCurve::mean, &BinnedCurve::lower, &BinnedCurve::upper, &BinnedCurve::samples})
       (all.*values).push_back((curve.*values)[k]);
   }
   return all;

@@ -24,7 +24,6 @@
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/plausibility.hpp"
-#include "host/import/mapping.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/known_parameters.hpp"
 #include "host/model/model_file.hpp"
@@ -241,7 +240,7 @@ nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request) 
   OpeningOptions options;
   if (const std::string map = fmt::format("{}", fmt::join(request.map, ",")); !map.empty()) {
     command += fmt::format(" --map {}", shell_word(map));
-    options.hints.mappings = parse_mappings(map);
+    take_mappings(options, map);
   }
   const Opening opening = open_logs(request.logs, options);
   const std::filesystem::path first(request.logs.front());

@@ -39,12 +39,13 @@ export async function showOpening(place, logs) {
   await open(place, logs, false);
 }
 
-/** The fields in which the user says what a channel is.
+/** The fields in which the user says what a channel is, for all logs that have it.
  * @param {any} channel
+ * @param {boolean} isFirst in the first of these logs
  * @param {() => void} changed
  */
-function choices(channel, changed) {
-  if (!isQuotable(channel.name)) return [channel.taken_as || "–", channel.taken_as ? short(channel.factor) : ""];
+function choices(channel, isFirst, changed) {
+  if (!isFirst || !isQuotable(channel.name)) return [channel.taken_as || "–", channel.taken_as ? short(channel.factor) : ""];
   const times = el("input", { type: "number", step: "any", value: own.get(channel.name)?.times ?? 1, disabled: !own.has(channel.name), className: "factor", "aria-label": "Factor of " + channel.name });
   const select = el("select", { "aria-label": "Quantity of " + channel.name },
     el("option", { value: "" }, channel.taken_as || "–"), ...kQuantities.map(([words], k) => el("option", { value: String(k), selected: own.get(channel.name)?.quantity === k }, words)));
@@ -59,10 +60,11 @@ function choices(channel, changed) {
   return [select, el("span", {}, channel.taken_as && !own.has(channel.name) ? short(channel.factor) + " " : "", times)];
 }
 
-function channels(file, changed) {
+function channels(file, changed, seen) {
   const heads = ["channel", "taken as", "factor", "sure", "why"].map((text) => el("th", { scope: "col" }, text));
   const rows = file.channels.map((channel) => {
-    const [quantity, factor] = choices(channel, changed);
+    const [quantity, factor] = choices(channel, !seen.has(channel.name), changed);
+    seen.add(channel.name);
     return el("tr", {}, el("td", {}, channel.name), el("td", {}, quantity), el("td", { className: "number" }, factor), el("td", { className: "number" }, percent(channel.sure)), el("td", {}, channel.why));
   });
   return el("figure", { className: "table" },
@@ -83,12 +85,12 @@ async function open(place, logs, yes) {
   if (mine !== asked) return;
   const accept = () => open(place, logs, true).catch((error) => notice(error.message));
   const remake = el("button", { type: "button", className: "primary", id: "choose-channels", hidden: true, onclick: accept }, "Make records with these channels");
-  const changed = () => (remake.hidden = !own.size);
+  const changed = () => (remake.hidden = !own.size), seen = new Set();
   changed();
   place.replaceChildren(
     el("h1", {}, logs.join(", ")),
     el("p", { className: "lead" }, told.asks.length ? "Is this right?" : "No record can be made from this yet: see below what is missing, or say what the channels are."),
     ...told.asks.map((ask) => el("p", {}, ask)),
     told.asks.length ? el("button", { type: "button", className: "primary", id: "accept-opening", onclick: accept }, "Correct: make records") : "",
-    remake, commandLine(command), ...told.files.map((file) => channels(file, changed)));
+    remake, commandLine(command), ...told.files.map((file) => channels(file, changed, seen)));
 }

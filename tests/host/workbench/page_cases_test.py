@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Takes machines through the page of the workbench and through the command: page_cases.py [CASE...]; each CASE is a
+"""Takes machines through the page of the workbench and through the command: page_cases_test.py [CASE...]; each CASE is a
 folder with records and model.toml, or with logs and drive.toml: these are dropped on the page, which opens them and
 identifies the model. The results must be the same to the last digit, without a console message. Without a CASE: a few
 machines, or all if AXIS_ALL_MACHINES is set. AXIS_SCREENSHOTS names a folder for the winning panel of each machine and
@@ -22,7 +22,7 @@ from selenium.common.exceptions import WebDriverException
 JUDGES = re.compile("valid|judge|held|test|check")
 LONGEST_S = 900
 SHARED = Path(os.environ.get("AXIS_SHARED_DIR", Path(__file__).resolve().parents[4] / "shared")) / "data"
-FEW = [Path(__file__).resolve().parents[2] / "data/drive-cases/single/case-00", SHARED / "real/feed-drive-rigid", SHARED / "controller-logs/vertical_z"]
+FEW = [Path(__file__).resolve().parents[2] / "data/drive-cases/single/case-00", SHARED / "real/arm-axis2", SHARED / "real-2/leadscrew-1"]
 ALL = ("drive-cases/single", "controller-logs", "real", "real-2")
 # Measured machines whose names of records do not say which are for validation: training, validation.
 SPLITS = {
