@@ -182,10 +182,15 @@ nlohmann::json look_first(const Folder& folder, const Request& request) {
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =
       MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);
-  const Diagnosis diagnosis = diagnose_quickly(model, measured, request.absent);
-  return {{"document", to_json(diagnosis)},
-          {"report", diagnosis_report(diagnosis, request.models.front()).html()},
-          {"command", command_line(request, {})}};
+  try {
+    const Diagnosis diagnosis = diagnose_quickly(model, measured, request.absent);
+    return {{"document", to_json(diagnosis)},
+            {"report", diagnosis_report(diagnosis, request.models.front()).html()},
+            {"command", command_line(request, {})}};
+  } catch (const Failure& none) {  // a browser would log a refused request as an error
+    if (none.code != ExitCode::answer_is_no) throw;
+    return {{"document", nullptr}, {"reason", none.what()}};
+  }
 }
 
 nlohmann::json gallery_picture(const std::string& kind) {

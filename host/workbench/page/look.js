@@ -14,7 +14,7 @@ export function firstLook() {
   if (!choice.model || !train.length) return Promise.resolve(null);
   const request = { do: "diagnose", quick: true, model: choice.model, train, validate, accept: choice.accepted };
   const key = JSON.stringify(request);
-  if (!looks.has(key)) looks.set(key, post("/api/look", request).catch(() => null));
+  if (!looks.has(key)) looks.set(key, post("/api/look", request).then((told) => (told.document ? told : null)).catch(() => null));
   return /** @type {Promise<any>} */ (looks.get(key));
 }
 

@@ -450,6 +450,7 @@ class Workbench(ServedPage, unittest.TestCase):
         opener = self.folder / "opener.html"  # as serve opens the page: the token is in no command line
         opener.write_text(f'<meta http-equiv="refresh" content="0;url={self.url}">')
         self.browser.get(opener.as_uri())
+        self.messages()  # of the page without its cookie, which may have asked for something
         self.until("[aria-label='Role of " + name + "']")
         WebDriverWait(self.browser, PATIENCE_S).until(lambda _: "onerror" in " ".join(self.texts(".command code")))
         self.assertEqual(self.browser.find_elements(By.TAG_NAME, "img"), [])
