@@ -49,6 +49,10 @@ def files_of(case: Path) -> tuple[list[str], list[str], str]:
     return [name for name in records if not JUDGES.search(name)], [name for name in records if JUDGES.search(name)], model
 
 
+def label_of(case: Path) -> str:
+    return case.parent.name + "-" + case.name
+
+
 def chosen_cases() -> list[Path]:
     if sys.argv[1:]:
         return [Path(name) for name in sys.argv[1:]]
@@ -115,7 +119,7 @@ class Case(ServedPage):
             command = state["command"].split(" --json ")[0].replace("axistool", PROGRAM, 1) + " --json -"
             said = json.loads(subprocess.run(command, shell=True, cwd=folder, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout)
             problems = [*self.messages(), *(["the command says something else"] if said != found else [])]
-            return {"case": case.name, "page": found["verdict"]["effects"], "status": found["verdict"]["status"], "odds": shown[:3], "seconds": round(seconds, 1), "problem": "; ".join(problems)}
+            return {"case": label_of(case), "page": found["verdict"]["effects"], "status": found["verdict"]["status"], "odds": shown[:3], "seconds": round(seconds, 1), "problem": "; ".join(problems)}
         finally:
             self.close()
             shutil.rmtree(folder)
@@ -140,9 +144,9 @@ def main() -> int:
     results = []
     for case in (case for case in cases if case not in missing):
         try:
-            results.append(Case().go(case, output / (case.name + ".png")))
+            results.append(Case().go(case, output / (label_of(case) + ".png")))
         except (WebDriverException, TimeoutError, AssertionError) as failure:
-            results.append({"case": case.name, "page": [], "problem": f"{type(failure).__name__}: {failure}"[:200]})
+            results.append({"case": label_of(case), "page": [], "problem": f"{type(failure).__name__}: {failure}"[:200]})
         print(results[-1], flush=True)
     if os.environ.get("AXIS_SCREENSHOTS"):
         (output / "results.json").write_text(json.dumps(results, indent=1) + "\n")
