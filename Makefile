@@ -234,7 +234,7 @@ test-machines: ## Machines of independent plants that make test leaves out, beca
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool made_machines test_host_diagnose
 	AXIS_ALL_MACHINES=1 ctest --test-dir $(BUILD) --no-tests=error --verbose \
-	  --tests-regex '^host/(effects_of_both_kinds|blind_tables|diagnose/(RealCogging|SearchBySteps)[.].*)$$'
+	  --tests-regex '^host/(effects_of_both_kinds|blind_tables|workbench/page_cases|diagnose/(RealCogging|SearchBySteps)[.].*)$$'
 
 .PHONY: plan-bench
 plan-bench: ## Plan, run and decide on machines made by independent code, pair by pair (CASES=DIR: the public cases)
@@ -248,7 +248,7 @@ page-bench: ## Cases (CASES="folder ...") through the workbench's page and the c
 	$(NEED) build test
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
-	AXISTOOL=$(abspath $(BUILD))/bin/axistool tests/host/workbench/page_cases.py $(BUILD)/page-bench $(or $(CASES),$(wildcard tests/data/drive-cases/single/*))
+	AXISTOOL=$(abspath $(BUILD))/bin/axistool AXIS_SCREENSHOTS=$(abspath $(BUILD))/page-bench tests/host/workbench/page_cases_test.py $(or $(CASES),$(wildcard tests/data/drive-cases/single/*))
 
 .PHONY: commission-bench
 commission-bench: ## axistool commission on twenty machines whose hidden effects it is not told (ONLY="01-cogging …"), and two of them on a circle

@@ -302,6 +302,8 @@ Report comparison_report(std::span<const ComparedModel> models, const Focus& foc
                 fmt::format("{} · {}", titles, names));
   report.verdict(verdict_of(models));
 
+  report.section("Measured and predicted");
+  report.add(prediction_traces(models, record_in(focus, comparison), focus.stretch));
   report.section("Size of the error");
   if (models.size() == 1) {
     Facts facts;
@@ -315,8 +317,6 @@ Report comparison_report(std::span<const ComparedModel> models, const Focus& foc
     report.add(std::move(facts));
   }
   report.add(error_table(models));
-
-  report.add(prediction_traces(models, record_in(focus, comparison), focus.stretch));
   add_table_figures(comparison.table, report);
   add_missing_effort(models, report, focus);
   add_where_it_fails(models, report);

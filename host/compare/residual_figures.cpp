@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "host/compare/effort_residual.hpp"
@@ -36,6 +38,37 @@ BinnedCurve curve_over(const ResidualCoordinate& over, Values x, const Values& y
   if (over.logarithmic)
     for (double& value : curve.x) value = std::pow(10.0, value);
   return curve;
+}
+
+/// The mean speed of its run for each sample, if all records are runs at constant speeds; otherwise empty. The speed
+/// within a run varies by noise and ripple, which must not spread the run over several bins.
+Values speeds_of_runs(const ResidualEffort& samples) {
+  constexpr std::size_t kFewestRuns = 3;
+  constexpr double kMostSpread = 0.25;  // the middle 80 % of a run's samples, over their median
+  std::map<std::size_t, Values> runs;
+  for (std::size_t k = 0; k < samples.w.size(); ++k) runs[samples.record[k]].push_back(samples.w[k]);
+  if (runs.size() < kFewestRuns) return {};
+  std::map<std::size_t, double> means;
+  for (const auto& [record, speeds] : runs) {
+    const double spread = quantile(speeds, 0.9) - quantile(speeds, 0.1);
+    if (!(spread <= kMostSpread * std::abs(quantile(speeds, 0.5)))) return {};
+    means[record] = std::accumulate(speeds.begin(), speeds.end(), 0.0) / static_cast<double>(speeds.size());
+  }
+  Values all;
+  for (const std::size_t record : samples.record) all.push_back(means[record]);
+  return all;
+}
+
+/// A curve whose line continues over intervals without samples.
+BinnedCurve joined(const BinnedCurve& curve) {
+  BinnedCurve all;
+  for (std::size_t k = 0; k < curve.x.size(); ++k) {
+    if (std::isnan(curve.mean[k])) continue;
+    for (const auto values :
+         {&BinnedCurve::x, &BinnedCurve::mean, &BinnedCurve::lower, &BinnedCurve::upper, &BinnedCurve::samples})
+      (all.*values).push_back((curve.*values)[k]);
+  }
+  return all;
 }
 
 std::string effort_name(sim::DriveKind kind) { return kind == sim::DriveKind::rotary ? "torque" : "force"; }
@@ -156,7 +189,8 @@ double ripple_period(const sim::DriveDescription& model) {
 
 std::vector<ScatterSeries> direction_curves(const ResidualEffort& samples, const Values& values,
                                             const ResidualCoordinate& over) {
-  const Values all = over.of(samples);
+  const Values runs = over.along == &ResidualEffort::w ? speeds_of_runs(samples) : Values{};
+  const Values all = runs.empty() ? over.of(samples) : runs;
   std::vector<ScatterSeries> curves;
   for (const double sign : {1.0, -1.0}) {
     Values x, y;
@@ -165,9 +199,10 @@ std::vector<ScatterSeries> direction_curves(const ResidualEffort& samples, const
       x.push_back(all[k]);
       y.push_back(values[k]);
     }
+    const BinnedCurve curve = curve_over(over, std::move(x), y);
     curves.push_back(curve_series(sign > 0.0 ? "forward" : "backward",
                                   sign > 0.0 ? SeriesRole::residual : SeriesRole::other,
-                                  curve_over(over, std::move(x), y)));
+                                  runs.empty() ? curve : joined(curve)));
   }
   return curves;
 }

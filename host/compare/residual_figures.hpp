@@ -46,7 +46,7 @@ ResidualCoordinate coordinate_of(std::string_view name, sim::DriveKind kind, dou
 double ripple_period(const sim::DriveDescription& model);
 
 /// The means of `values` over a coordinate as two curves, forward and backward. Each bin has the band that holds 80 %
-/// of its samples.
+/// of its samples. Over the speed, runs at constant speeds are one bin each.
 std::vector<ScatterSeries> direction_curves(const ResidualEffort& samples, const std::vector<double>& values,
                                             const ResidualCoordinate& over);
 

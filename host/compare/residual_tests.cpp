@@ -342,8 +342,9 @@ ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& 
       all_along.insert(all_along.end(), (second.samples.*along).begin(), (second.samples.*along).end());
       all.insert(all.end(), halves[1]->value.begin(), halves[1]->value.end());
       const auto [from, to] = Curve(all_along, all, bins).stands_out();
-      dependence.where = fmt::format("{} between {} and {} {}", words, format_value(factor * from, 3),
-                                     format_value(factor * to, 3), unit);
+      const std::string least = format_value(factor * from, 3), most = format_value(factor * to, 3);
+      dependence.where = least == most ? fmt::format("{} of {} {}", words, least, unit)
+                                       : fmt::format("{} between {} and {} {}", words, least, most, unit);
     }
     tests.dependences.push_back(std::move(dependence));
   };

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/connection.hpp"
@@ -337,6 +338,27 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   return diagnosis;
 }
 
+namespace {
+
+/// Says that nothing is missing if the force balance names no effect, leaves the decision to the motion, and the error
+/// of the motion is at the noise floor.
+bool is_clear_by_motion(Diagnosis& diagnosis) {
+  const ErrorOnSets& error = diagnosis.base_error;
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (verdict.status != Status::unexplained || !verdict.effects.empty()) return false;
+  if (error.train.combined > kSmall || error.validate.combined > kSmall) return false;
+  verdict.status = verdict.parameters.empty() ? Status::adequate : Status::parameters;
+  verdict.explanation = fmt::format(
+      "The error is {:.2f} times the noise floor on validation data. First look, by the force balance alone, which "
+      "finds no effect; the search by motion may find one.",
+      error.validate.combined);
+  verdict.next_experiment = "None needed for motions like these.";
+  verdict.probability_nothing += std::exchange(verdict.probability_other, 0.0);
+  return true;
+}
+
+}  // namespace
+
 Diagnosis diagnose_quickly(const sim::DriveDescription& given, const Measurements& measured,
                            const std::vector<std::string>& known_absent) {
   const sim::DriveDescription model = with_measured_sensors(given, measured);
@@ -354,6 +376,7 @@ Diagnosis diagnose_quickly(const sim::DriveDescription& given, const Measurement
   diagnosis.rows = rows;
   diagnosis.log = measured.log();
   take_figures(given, diagnosis);
+  if (!decides && is_clear_by_motion(diagnosis)) return diagnosis;
   diagnosis.verdict.explanation = fmt::format(
       "First look, by the force balance alone{}. {}",
       decides ? "; the search by motion may change it" : ", whose residual is small here: the search by motion decides",

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "host/compare/residual_figures.hpp"
+#include "host/compare/residual_spectrum.hpp"
+#include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/text_format.hpp"
@@ -48,10 +50,17 @@ void add_found(Report& report, const std::vector<FoundEffect>& found, bool rival
 
 void add_unexplained(Report& report, const Diagnosis& diagnosis) {
   const std::string& coordinate = diagnosis.verdict.coordinate;
-  if (coordinate.empty() || coordinate == "frequency") return;
+  if (coordinate.empty()) return;
   const sim::DriveKind kind = diagnosis.best.data.kind;
+  const bool of_speed_channel = speed_channel_alone_fails(diagnosis);
+  const RecordSet all = together(diagnosis.training, diagnosis.validation);
+  if (coordinate == "frequency") {
+    const ResidualView view{"", SeriesRole::residual, residuals_on({&diagnosis.best}, all).front(), {}};
+    report.section("What is left", fmt::format("Unexplained residual, most of it {}.", diagnosis.verdict.where));
+    return add_residual_spectrum(report, {&view, 1}, kind);
+  }
   const ResidualEffort samples =
-      residuals_on({&diagnosis.best}, together(diagnosis.training, diagnosis.validation)).front();
+      of_speed_channel ? residual_of_speed_channel(diagnosis.best, all) : residuals_on({&diagnosis.best}, all).front();
   const ResidualCoordinate over = coordinate_of(coordinate, kind, period_of(diagnosis.best, diagnosis));
   if ((samples.*over.along).size() != samples.w.size() || samples.w.empty()) return;
   ScatterPlot plot;
@@ -59,7 +68,10 @@ void add_unexplained(Report& report, const Diagnosis& diagnosis) {
   plot.caption = fmt::format("Residual on training and validation data, most of it {}.", diagnosis.verdict.where);
   plot.large = true;
   plot.x = over.axis;
-  plot.y = {kind == sim::DriveKind::rotary ? "torque residual" : "force residual", units_of(kind).effort};
+  plot.y = {of_speed_channel                 ? "speed residual"
+            : kind == sim::DriveKind::rotary ? "torque residual"
+                                             : "force residual",
+            of_speed_channel ? units_of(kind).speed : units_of(kind).effort};
   plot.logarithmic_x = over.logarithmic;
   for (ScatterSeries& curve : direction_curves(samples, samples.missing, over))
     if (!curve.x.empty()) plot.series.push_back(std::move(curve));

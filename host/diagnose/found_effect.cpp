@@ -353,14 +353,31 @@ double explained_share(const FoundEffect& effect) {
   return whole > 0.0 ? 1.0 - left / whole : 0.0;
 }
 
+namespace {
+
+/// Removes the bands of curves whose bands are mostly so wide that they hide the means. Returns whether bands remain.
+bool keep_narrow_bands(ScatterPlot& plot) {
+  constexpr double kMostOfThePlot = 0.6;
+  bool remain = false;
+  for (ScatterSeries& series : plot.series) {
+    Values widths = difference(series.upper, series.lower);
+    std::erase_if(widths, [](double width) { return !std::isfinite(width); });
+    if (widths.empty()) continue;
+    if (plot.y_range && median(widths) > kMostOfThePlot * (plot.y_range->second - plot.y_range->first)) {
+      series.lower.clear();
+      series.upper.clear();
+    } else {
+      remain = true;
+    }
+  }
+  return remain;
+}
+
+}  // namespace
+
 ScatterPlot effect_plot(const FoundEffect& effect) {
   ScatterPlot plot;
   plot.title = size_in_words(effect);
-  plot.caption = fmt::format(
-      "{} Points: residual of the model without the effect{}. Lines: contribution of the fitted effect, which explains "
-      "{:.0f} % of the squares of these points.",
-      effect.points ? effect.points->caption : "Training and validation data.",
-      effect.points ? "" : ", with the band that holds 80 % of the samples", 100.0 * explained_share(effect));
   plot.large = true;
   plot.y = {effect.of_speed_channel                  ? "speed residual"
             : effect.drive == sim::DriveKind::rotary ? "torque residual"
@@ -371,6 +388,13 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
   else
     append_curves(effect.over, effect.without, effect.trace, plot);
   show_means(plot);
+  const bool has_bands = keep_narrow_bands(plot);
+  plot.caption = fmt::format(
+      "{} Points: residual of the model without the effect{}. Lines: contribution of the fitted effect, which explains "
+      "{:.0f} % of the squares of these points.",
+      effect.points ? effect.points->caption : "Training and validation data.",
+      !effect.points && has_bands ? ", with the band that holds 80 % of the samples" : "",
+      100.0 * explained_share(effect));
   return plot;
 }
 

@@ -279,8 +279,10 @@ void take_map(OpeningOptions& options, const std::string& map) {
   if (std::filesystem::exists(map))
     options.mapping_path = map;
   else
-    options.hints.mappings = parse_mappings(map);
+    take_mappings(options, map);
 }
+
+void take_mappings(OpeningOptions& options, const std::string& map) { options.hints.mappings = parse_mappings(map); }
 
 Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options) {
   std::vector<Log> logs;

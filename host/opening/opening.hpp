@@ -19,6 +19,9 @@ struct OpeningOptions {
 /// `map`: the file of an accepted mapping, or an argument of --map such as `x_mm=pos*0.001,…`. Throws Failure(usage).
 void take_map(OpeningOptions& options, const std::string& map);
 
+/// The same, but never a file.
+void take_mappings(OpeningOptions& options, const std::string& map);
+
 /// The file name for one axis, "model-x.toml". Characters in the axis name cannot lead to another folder.
 std::string name_for_axis(std::string_view stem, std::string_view axis, std::string_view ending);
 

@@ -1,6 +1,7 @@
 #include "host/workbench/actions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -181,10 +182,15 @@ nlohmann::json look_first(const Folder& folder, const Request& request) {
   const sim::DriveDescription model = read_model(request.models.front());
   const Measurements measured =
       MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);
-  const Diagnosis diagnosis = diagnose_quickly(model, measured, request.absent);
-  return {{"document", to_json(diagnosis)},
-          {"report", diagnosis_report(diagnosis, request.models.front()).html()},
-          {"command", command_line(request, {})}};
+  try {
+    const Diagnosis diagnosis = diagnose_quickly(model, measured, request.absent);
+    return {{"document", to_json(diagnosis)},
+            {"report", diagnosis_report(diagnosis, request.models.front()).html()},
+            {"command", command_line(request, {})}};
+  } catch (const Failure& none) {  // a browser would log a refused request as an error
+    if (none.code != ExitCode::answer_is_no) throw;
+    return {{"document", nullptr}, {"reason", none.what()}};
+  }
 }
 
 nlohmann::json gallery_picture(const std::string& kind) {
@@ -236,7 +242,12 @@ nlohmann::json cut_out(const Folder& folder, const CutRequest& request) {
 nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request) {
   std::string command = "axistool open";
   for (const std::string& log : request.logs) command += fmt::format(" {}", shell_word(folder.existing(log)));
-  const Opening opening = open_logs(request.logs, {});
+  OpeningOptions options;
+  if (const std::string map = fmt::format("{}", fmt::join(request.map, ",")); !map.empty()) {
+    command += fmt::format(" --map {}", shell_word(map));
+    take_mappings(options, map);
+  }
+  const Opening opening = open_logs(request.logs, options);
   const std::filesystem::path first(request.logs.front());
   const std::string target =
       folder.free_name(request.logs.size() == 1 ? std::filesystem::path(first).replace_extension().string()

@@ -45,7 +45,8 @@ nlohmann::json look_alike(const Folder& folder, const Request& request);
 Comparison compare_trial(const Folder& folder, const Request& request);
 inline constexpr const char* kTrial = "trial.toml";
 
-/// Result of a quick diagnosis: "document" (the JSON of --json) and "report" (the page). Throws as the command does.
+/// Result of a quick diagnosis: "document" (the JSON of --json) and "report" (the page). If the records allow none, the
+/// document is null, with a "reason". Throws as the command does.
 nlohmann::json look_first(const Folder& folder, const Request& request);
 
 /// The plot of an effect in the gallery, for report.js, and the size of its residual relative to a run without it.

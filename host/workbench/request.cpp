@@ -157,8 +157,9 @@ CutRequest parse_cut(std::string_view text) {
 
 OpenRequest parse_open(std::string_view text) {
   const nlohmann::json document = object_of(text);
-  require_known(document, {"logs", "yes"});
-  OpenRequest request{list_of(document, "logs", file_of), flag_of(document, "yes")};
+  require_known(document, {"logs", "yes", "map"});
+  const auto own = [](const std::string& mapping, const std::string&) { return mapping; };
+  OpenRequest request{list_of(document, "logs", file_of), flag_of(document, "yes"), list_of(document, "map", own)};
   if (request.logs.empty()) refuse("logs", "expected at least one log");
   return request;
 }

@@ -52,6 +52,7 @@ CutRequest parse_cut(std::string_view text);
 struct OpenRequest {
   std::vector<std::string> logs;
   bool yes = false;
+  std::vector<std::string> map{};  ///< "x_mm=pos*0.001": the channels that the user has chosen
 };
 OpenRequest parse_open(std::string_view text);
 

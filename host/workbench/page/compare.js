@@ -4,7 +4,7 @@ import { effects } from "./catalogue.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
 import { post } from "./exchange.js";
 import { compared } from "./jobs.js";
-import { firstLook, mostProbable } from "./look.js";
+import { firstLook, ranked } from "./look.js";
 import { plots, save } from "./plot_files.js";
 import { showPicture } from "./record.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
@@ -52,22 +52,27 @@ export function drawComparison(place, told, onZoom, moreTools) {
   if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
   const parts = partsOf(told.report);
   const page = () => save("comparison.html", new Blob([told.report], { type: "text/html" }));
-  place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
+  place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
   const links = el("div");
   place.append(links);
   const sections = sectionLinks([showBlocks(place, parts, () => true, onZoom, moreTools)]);
   sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
   links.replaceWith(sections);
+  place.append(commandLine(told.command));
   place.style.minHeight = "";
 }
 
-/** Shows beside the comparison the most probable answer of the force-balance regression, as soon as it is known. */
+const kRankedShown = 4;
+
+/** Shows beside the comparison the most probable answers of the force-balance regression, as soon as they are known. */
 async function showFirstLook(head) {
   const [look, catalogue] = await Promise.all([firstLook(), effects()]);
   if (!look || !head.isConnected) return;
-  const { kinds, title, probability } = mostProbable(look.document);
-  const name = title || kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ");
-  head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + name + " " + percent(probability)));
+  const named = ({ kinds, title, probability }) =>
+    (title || kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ")) + " " + percent(probability);
+  const answers = ranked(look.document);
+  const shown = answers.filter((one, k) => k === 0 || (k < kRankedShown && one.probability >= 0.01));
+  head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + shown.map(named).join(", ")));
 }
 
 /** Form for the options: record of the traces, period, time range. */

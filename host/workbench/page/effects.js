@@ -153,7 +153,7 @@ function cards(told) {
   const rest = told.candidates.filter((one) => !useful.includes(one));
   const list = useful.sort((a, b) => b.probability - a.probability).map((one) => card(one, told));
   if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
-    (verdict.coordinate ? "Most of the residual depends on " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
+    (verdict.coordinate ? "Most of the residual depends on " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + (verdict.effects.length ? "" : "Next: " + verdict.next_experiment),
     el("div", { className: "row" }, el("button", { type: "button", onclick: () => add("free_curve") }, "Add a free curve"))));
   if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "Then the residual would be noise."));
   const places = [el("h2", {}, "Possible explanations"), el("ol", { className: "cards", id: "cards" }, ...list)];

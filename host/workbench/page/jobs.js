@@ -9,6 +9,8 @@ export const isOpen = (job) => job.state === "queued" || job.state === "running"
 /** @type {Set<number>|undefined} jobs that had ended at the last poll, because a short job may never be seen running */
 let endedBefore;
 let timer = 0;
+/** Until then the page looks often, because a short job may end at once. */
+let hastyUntil = 0;
 
 /** Registers a listener that receives the jobs that have ended since the last poll; returns a function that ends this.
  * @param {(ended: any[]) => void} listener
@@ -31,11 +33,12 @@ export async function lookAtJobs() {
   const ended = jobs.filter((job) => !isOpen(job) && !known.has(job.id));
   endedBefore = new Set(jobs.filter((job) => !isOpen(job)).map((job) => job.id));
   listeners.forEach((listener) => listener(ended));
-  if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, 150);
+  if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, performance.now() < hastyUntil ? 40 : 150);
 }
 
 /** @param {any} request */
 export async function begin(request) {
+  hastyUntil = performance.now() + 3000;
   try {
     await post("/api/jobs", request);
   } catch (error) {

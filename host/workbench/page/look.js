@@ -14,17 +14,17 @@ export function firstLook() {
   if (!choice.model || !train.length) return Promise.resolve(null);
   const request = { do: "diagnose", quick: true, model: choice.model, train, validate, accept: choice.accepted };
   const key = JSON.stringify(request);
-  if (!looks.has(key)) looks.set(key, post("/api/look", request).catch(() => null));
+  if (!looks.has(key)) looks.set(key, post("/api/look", request).then((told) => (told.document ? told : null)).catch(() => null));
   return /** @type {Promise<any>} */ (looks.get(key));
 }
 
-/** The most probable answer: { kinds, probability }; `kinds` is empty for "something else" and "nothing is missing".
+/** The answers of a diagnosis, most probable first; `kinds` is empty for "something else" and "nothing is missing".
  * @param {any} told axis-diagnosis/1
+ * @returns {{kinds: string[], title: string, probability: number}[]}
  */
-export function mostProbable(told) {
-  const best = told.candidates.reduce((one, other) => (other.probability > one.probability ? other : one), { kinds: [], probability: 0 });
+export function ranked(told) {
   const { probability_other: other, probability_nothing: nothing } = told.verdict;
-  if (other > best.probability && other > nothing) return { kinds: [], title: "Something else", probability: other };
-  if (nothing > best.probability) return { kinds: [], title: "Nothing is missing", probability: nothing };
-  return { kinds: best.kinds, title: "", probability: best.probability };
+  const answers = [...told.candidates.map(({ kinds, probability }) => ({ kinds, title: "", probability })),
+    { kinds: [], title: "Something else", probability: other }, { kinds: [], title: "Nothing is missing", probability: nothing }];
+  return answers.filter((one) => one.probability > 0).sort((a, b) => b.probability - a.probability);
 }

@@ -25,9 +25,19 @@ if not shutil.which("chromium") or not shutil.which("chromedriver"):
 PROGRAM = os.environ["AXISTOOL"]
 PATIENCE_S = 240
 
+# Drops files on the page; their content comes from a file input that exists only for this purpose.
+DROP = """
+const input = document.getElementById("test-input"), data = new DataTransfer();
+for (const file of input.files) data.items.add(file);
+for (const type of ["dragover", "drop"]) document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+input.remove();
+"""
+
 
 class ServedPage:
     """Starts both; end() checks that the program ends in order."""
+
+    clicks = 0
 
     def open(self, folder: Path, *options: str) -> None:
         self.folder = folder
@@ -71,9 +81,15 @@ class ServedPage:
             element = self.until(selector)
             self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
             element.click()
+            self.clicks += 1
             return True
 
         WebDriverWait(self.browser, PATIENCE_S, 0.1, (StaleElementReferenceException,)).until(clicked, selector)
+
+    def drop(self, *paths: Path) -> None:
+        self.browser.execute_script("const i = document.createElement('input'); i.type = 'file'; i.multiple = true; i.id = 'test-input'; document.body.append(i);")
+        self.browser.find_element(By.ID, "test-input").send_keys("\n".join(str(path) for path in paths))
+        self.browser.execute_script(DROP)
 
     def messages(self) -> list[str]:
         """What the page wrote to the console since the last call."""
