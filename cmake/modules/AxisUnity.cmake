@@ -1,22 +1,24 @@
 # Sources of a library or program are compiled together: most of the compile time goes to headers (Eigen, fmt, JSON, CLI11)
 # and their templates, which are then compiled once for many sources. Names in anonymous namespaces must therefore differ
 # within a top folder (cmake/checks/local_names.py). `make` and `make test` build a new tree in this way; UNITY=OFF
-# compiles each source separately, for work on a few of them or with less than 2 GB of memory for each processor.
+# compiles each source separately, for work on a few of them or with less than 3 GB of memory for each processor.
 # `make lint` also checks each separately, which shows that it includes what it uses.
 option(AXIS_UNITY "Compile many sources together" OFF)
 
 # axis_unity(NAME OUT SOURCE...): sets OUT to the files to compile for the target NAME: the sources themselves, or files
 # that include at most AXIS_UNITY_SOURCES. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION,
-# stays by itself. Separate sources and AXIS_HOT_FOLDERS, which compute, get -O2. All others get -O1, which takes two
-# thirds of the compile time.
+# stays by itself. Separate sources and AXIS_HOT_FOLDERS, which compute, get -O2. AXIS_COLD_FOLDERS, which read options
+# and print, get -O0. All others get -O1, which takes two thirds of the compile time.
 set(AXIS_UNITY_SOURCES 60)
 set(AXIS_HOT_FOLDERS sim effects compare fit search diagnose effort infer scale simulated_board)
+set(AXIS_COLD_FOLDERS axistool)
 function(axis_unity NAME OUT)
   if(NOT AXIS_UNITY)
     set(${OUT} ${ARGN} PARENT_SCOPE)
     return()
   endif()
   set(COMPILED)
+  set(O0_INCLUDES)
   set(O1_INCLUDES)
   set(O2_INCLUDES)
   foreach(SOURCE IN LISTS ARGN)
@@ -31,11 +33,13 @@ function(axis_unity NAME OUT)
       endif()
     elseif(FOLDER IN_LIST AXIS_HOT_FOLDERS)
       list(APPEND O2_INCLUDES "#include \"${SOURCE}\"")
+    elseif(FOLDER IN_LIST AXIS_COLD_FOLDERS)
+      list(APPEND O0_INCLUDES "#include \"${SOURCE}\"")
     else()
       list(APPEND O1_INCLUDES "#include \"${SOURCE}\"")
     endif()
   endforeach()
-  foreach(LEVEL O2 O1)
+  foreach(LEVEL O2 O1 O0)
     list(LENGTH ${LEVEL}_INCLUDES COUNT)
     if(COUNT EQUAL 0)
       continue()
