@@ -22,6 +22,11 @@ RightSingular right_singular(const MatrixXd& matrix) {
   return {found.singularValues(), found.matrixV()};
 }
 
+MatrixXd orthonormal_basis(const MatrixXd& matrix) {
+  const auto parts = matrix.colPivHouseholderQr();
+  return parts.householderQ() * MatrixXd::Identity(matrix.rows(), parts.rank());
+}
+
 VectorXd least_squares_solution(const MatrixXd& columns, const VectorXd& values) {
   return columns.colPivHouseholderQr().solve(values);
 }

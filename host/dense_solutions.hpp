@@ -24,6 +24,9 @@ struct RightSingular {
 };
 RightSingular right_singular(const Eigen::MatrixXd& matrix);
 
+/// Orthonormal columns that span those of the matrix, by QR with column pivoting; as many as its rank.
+Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& matrix);
+
 /// Least-squares coefficients of the columns for `values`, by QR with column pivoting.
 Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values);
 Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& values);

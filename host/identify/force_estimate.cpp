@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/statistics.hpp"
@@ -34,7 +35,7 @@ ForceEstimate force_estimate(const AxisDesign& design, const sim::DataSheet& dat
   found.newton_per_V = newton_per_volt(design.axis, data.kind);
   found.band_N = kNormal95 * std::sqrt(sum(2, 2)) * found.newton_per_V;
   // For a disturbance that grows by 1 V a sample, the error in volts is the delay in samples.
-  const Eigen::Vector3d behind = (Eigen::Matrix3d::Identity() - memory).lu().solve(rest * design.model.W.col(1));
+  const Eigen::Vector3d behind = square_solution(Eigen::Matrix3d::Identity() - memory, rest * design.model.W.col(1));
   found.delay_s = behind(2) * data.sample_period_s;
   return found;
 }

@@ -2,7 +2,7 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -36,8 +36,7 @@ class Remainder {
   Remainder(const TableRows& rows, const Evidence& evidence, const MatrixXd& others, const NoiseColour& colour)
       : rows_(rows), evidence_(evidence), colour_(colour) {
     const MatrixXd white = evidence.whiten(others, colour);
-    const Eigen::ColPivHouseholderQR<MatrixXd> factors(white);
-    taken_ = factors.householderQ() * MatrixXd::Identity(white.rows(), factors.rank());
+    taken_ = orthonormal_basis(white);
   }
 
   /// One column per drive.
