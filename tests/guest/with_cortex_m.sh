@@ -6,7 +6,7 @@
 # guest's time to the board, which waits when it is ahead.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
-image=$(readlink -f "$1")
+image=$(readlink -m "$1")  # the folder may be missing too
 shift
 
 if ! command -v qemu-system-arm >/dev/null || [ ! -e "$image" ]; then
